@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu_steps.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/cuda/gpu_align.hpp"
 #include "saccade/cuda/gpu_map.hpp"
@@ -246,6 +247,9 @@ int main(int argc, char** argv) {
         views, gains.gpu_ms, gains.gpu_prepare_ms, gains.cpu_ms, gains.rays, gains.rays_cast, gains.different);
     equal = equal && gains.different == 0;
   }
+  equal = need(bench::check_gpu_steps(
+              {options.quick, options.emulated, [&](const TsdfConfig& config) { return open(options, config); }})) &&
+          equal;
   const FrameTimes frames = time_frames(options);
   std::printf(" \"fusion\": {\"gpu_ms\": %.3f, \"cpu_ms\": %.3f, \"frames\": %d, \"equal\": %s},\n", frames.gpu_ms,
               frames.cpu_ms, frames.frames, frames.equal ? "true" : "false");

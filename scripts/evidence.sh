@@ -12,6 +12,7 @@ mkdir -p "$out"
 failed=0
 
 # step NAME COMMAND…: runs unless out/evidence/NAME.done is there; the command line and its outcome are kept beside it.
+# Exit status 3 says that other machines are still at work.
 step() {
   local name="$1"
   shift
@@ -21,13 +22,19 @@ step() {
   fi
   echo "  $name: $*"
   printf '%s\n' "$*" >"$out/$name.command"
-  if "$@" >"$out/$name.log" 2>&1; then
+  local status=0
+  "$@" >"$out/$name.log" 2>&1 || status=$?
+  if ((status == 0)); then
     touch "$out/$name.done"
+    return 0
+  fi
+  if ((status == 3)); then
+    echo "  $name is not complete; see $out/$name.log, and run this again"
   else
     echo "  $name FAILED, see $out/$name.log"
-    failed=1
-    return 1
   fi
+  failed=1
+  return 1
 }
 
 fuse() {  # SEQUENCE TRACKING OPTIONS…
@@ -44,10 +51,36 @@ echo "Recorded sequences"
 fuse rgbd_redkitchen forced
 fuse rgbd_redkitchen icp
 fuse rgbd_redkitchen hint
+fuse rgbd_redkitchen rgbd
 fuse rgbd_realsense_box forced
 fuse rgbd_realsense_box icp
+fuse rgbd_realsense_box rgbd
 fuse rgbd_eyeinhand_shelfA forced
 fuse rgbd_eyeinhand_shelfA icp
+fuse rgbd_eyeinhand_shelfA rgbd
+
+echo "Loops: ten rooms that the camera comes back to, twenty places that look alike"
+loops() {  # NAME SCENE:SEED OPTIONS…
+  local name="$1" scene="$2" frames="$out/frames_${2/:/_}"
+  shift 2
+  [[ -f $out/$name.done ]] || step "frames_${scene/:/_}" build/release/saccade --quiet scene sequence "$scene" --image-size 240,180 \
+    --pose-noise off --out "$frames" --force
+  step "$name" build/release/saccade --quiet fuse "$frames" --tracking icp --voxel-size 0.01 --no-mesh --no-pictures "$@" \
+    --out "$out/run_$name" --force --json "$out/$name.json"
+}
+for seed in 1 2 3 4 5 6 7 8 9 10; do
+  loops "open_$seed" "loop:$seed"
+  loops "loop_$seed" "loop:$seed" --loops end
+  loops "online_$seed" "loop:$seed" --loops online
+done
+for seed in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+  loops "alike_$seed" "alike:$seed" --loops end
+done
+for mode in off end; do
+  step "surfels_loops_$mode" build/release/saccade --quiet surfels "$out/frames_loop_1" --tracking icp --loops "$mode" --out "$out/surfels_loops_$mode.ply" \
+    --json "$out/surfels_loops_$mode.json"
+done
+step loops_table /usr/bin/python3 scripts/evidence_loops.py "$out"
 
 echo "Poses beside colour images"
 trajectory="$out/fuse_rgbd_redkitchen_icp/trajectory.txt"
@@ -58,6 +91,27 @@ if [[ -f $trajectory ]]; then
 else
   echo "  skipped, $trajectory is not there"
 fi
+
+echo "Tracking by colours and depths: hand-held cameras before the scenes of surfels, two ways each, ICP beside it"
+for sequence in workshop-1 workshop-2 desk magazines-1 magazines-2; do
+  for seed in 1 2; do
+    frames="$out/sequences/$sequence-$seed"
+    mkdir -p "$out/sequences"
+    step "sequence_${sequence}_$seed" build/release/saccade --quiet --seed "$seed" scene sequence "$sequence" --frames 300 --pose-noise off \
+      --out "$frames" --force
+    for tracking in icp rgbd; do
+      name="track_${sequence}_${seed}_$tracking"
+      step "$name" build/release/saccade --quiet fuse "$frames" --tracking "$tracking" --no-mesh --no-pictures --force --out "$out/$name" \
+        --json "$out/$name.json"
+    done
+  done
+done
+step sequence_desk_fast build/release/saccade --quiet scene sequence desk --frames 120 --image-size 640,480 --pose-noise off \
+  --out "$out/sequences/desk-fast" --force
+for tracking in icp rgbd; do
+  step "track_desk_fast_$tracking" build/release/saccade --quiet fuse "$out/sequences/desk-fast" --tracking "$tracking" --no-mesh \
+    --no-pictures --force --out "$out/track_desk_fast_$tracking" --json "$out/track_desk_fast_$tracking.json"
+done
 
 echo "View evaluation: 960 poses, 640×480, a forgotten sphere of 0.2 m on a table"
 map="$out/fuse_rgbd_redkitchen_forced/map.sacmap"
@@ -94,8 +148,31 @@ step attention build/release/saccade --quiet compare --scenes tabletop-1,tableto
 step attention_clutter build/release/saccade --quiet compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle \
   --robot comau --seeds 1 --max-views 5 --out "$out/attention_clutter" --json "$out/attention_clutter.json"
 
+echo "Published protocols: stand-ins, and the meshes that are there; figures go to docs/guides/benchmark.md"
+for protocol in view-sphere one-shot tabletop-arm household; do
+  step "benchmark_$protocol" build/release/saccade --quiet benchmark "$protocol" --seeds 1-3 --out "$out/benchmark_$protocol" \
+    --json "$out/benchmark_$protocol.json"
+done
+if [[ -d $data/meshes_stanford ]]; then
+  for protocol in view-sphere one-shot; do
+    step "benchmark_${protocol}_stanford" build/release/saccade --quiet benchmark "$protocol" --objects "$data/meshes_stanford" --seeds 1-3 \
+      --out "$out/benchmark_${protocol}_stanford" --json "$out/benchmark_${protocol}_stanford.json"
+  done
+else
+  echo "  without the Armadillo and the Bunny, $data/meshes_stanford is not there"
+fi
+if [[ -d $data/meshes_ycb ]]; then
+  step benchmark_ycb build/release/saccade --quiet benchmark household --objects "$data/meshes_ycb" --seeds 1-3 --out "$out/benchmark_ycb" \
+    --json "$out/benchmark_ycb.json"
+fi
+
 echo "The planner beside the oracle, baselines and sphere; figures go to docs/results/planner.md"
 step planner scripts/evidence_planner.py build/release/saccade "$out/planner" docs/results/planner.md
+
+echo "The headline figures: a hundred scenes, ten seeds, five strategies; on Slurm where it answers, else here, some 18 hours on two cores"
+step headline scripts/evidence_headline.py build/release/saccade "$out/headline" docs/results/headline.md
+echo "Explorations on surfels beside those on a volume; the table goes to docs/guides/exploration.md"
+step maps scripts/evidence_maps.py build/release/saccade "$out/maps"
 
 echo "Updates after a user's task: ten seeds, noise on"
 for scene in bottle jug; do
@@ -170,8 +247,30 @@ else
   echo "  skipped, $clouds is not there"
 fi
 
+echo "Annotation: simulated annotators in made rooms and streets"
+for kind in room street; do
+  mkdir -p "$out/scans_$kind"
+  for seed in 1 2 3 4 5 6; do
+    step "scan_${kind}_$seed" build/release/saccade --quiet scene scan "$kind:$seed" --step 0.35 --out "$out/scans_$kind/$kind-$seed.pcd"
+  done
+  step "annotation_$kind" build/release/saccade --quiet annotate "$out/scans_$kind" --simulate "$out/scans_$kind" --clicks 6 \
+    --json "$out/annotation_$kind.json"
+done
+
 echo "Annotation sessions: a thousand processes killed while they annotate"
 step annotation_kills env SACCADE_KILL_CASES=1000 build/release/tests/unit_io_sessions '--gtest_filter=AnnotationSessionKilled*'
+
+echo "Maps larger than the memory: a building of 40 × 30 × 6 m at 1 cm, and a tenth of the memory"
+configure release -DSACCADE_BUILD_BENCH=ON && compile release large_map >"$out/build_large_map.log" || failed=1
+step large_map_ratio build/release/bench/large_map ratio 3
+step large_map_frames build/release/bench/large_map frames "$out/building" &&
+  step large_map_building build/release/saccade --quiet fuse "$out/building" --tracking forced --voxel-size 0.01 --map-memory 640MiB \
+    --no-mesh --no-pictures --out "$out/large_map_building" --json "$out/large_map_building.json" &&
+  step large_map_memory /usr/bin/python3 -c "
+import json, sys
+result = json.load(open('$out/large_map_building.json'))['result']
+print(result['frames'], result['map']['bytes'], result['paging'], result['peak_rss_bytes'])
+sys.exit(result['peak_rss_bytes'] > 1 << 30)"
 
 echo "The page: its times, and the annotation of ten million points"
 step browser_times scripts/web.sh test --project times --no-deps

@@ -134,7 +134,7 @@ class Figures:
 def student_t(degrees):
     """97.5 % quantile, for 95 % intervals."""
     table = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36, 8: 2.31, 9: 2.26, 10: 2.23, 15: 2.13,
-             17: 2.11, 20: 2.09, 29: 2.05}
+             17: 2.11, 20: 2.09, 29: 2.05, 49: 2.01, 99: 1.98, 199: 1.97}
     return table[max(key for key in table if key <= degrees)]
 
 

@@ -10,7 +10,7 @@ results=out/test
 rm -rf "$results"
 mkdir -p "$results"
 
-phases="${SACCADE_TEST_PHASES:-format release web asan tsan fuzz tidy ros package}"
+phases="${SACCADE_TEST_PHASES:-format release web asan tsan fuzz tidy slurm ros package}"
 
 # run_ctest NAME PRESET OPTIONS…: two at a time. ctest leaves its results in out/test/NAME.xml, GoogleTest in out/test/NAME/.
 run_ctest() {
@@ -33,7 +33,7 @@ phase_format() { scripts/format.sh; }
 build_release() {
   configure release "${release_options[@]}" -DSACCADE_ROS1=OFF -DSACCADE_ROS2=OFF && compile release
 }
-phase_release() { run_ctest release release -LE "floors|ros"; }
+phase_release() { run_ctest release release -LE "floors|ros|slurm"; }
 
 # The page: its bundle, then a browser that uses it.
 build_web() { scripts/web.sh check; }
@@ -54,6 +54,10 @@ phase_fuzz() { SACCADE_FUZZ_FAILED="$results/fuzz-failed.txt" scripts/fuzz.sh "$
 
 build_tidy() { :; }
 phase_tidy() { scripts/tidy.sh; }
+
+# A campaign on a cluster of two nodes on this machine.
+build_slurm() { scripts/install_packages.sh slurm && configure release "${release_options[@]}" && compile release saccade; }
+phase_slurm() { run_ctest slurm release -L slurm; }
 
 # The adapters for ROS, with their packages; all before was built and tested without them.
 build_ros() {

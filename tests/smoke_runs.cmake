@@ -6,6 +6,7 @@ set(smoke_tests
   AnnotateSession.AScriptLabelsAScene
   Attend.FindsWhatTheLibraryFinds
   BadInput.*
+  BenchmarkCommand.ListsItsProtocols
   CompareCommand.GoesOnWhereItStopped
   ExploreCommand.GoesFromViewToView
   ExploreProcesses.ACameraAndARobotThatAreProgramsBuildAMap

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "annotate_sequence.hpp"
 #include "context.hpp"
 #include "saccade/io/clouds/label_boxes_io.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
@@ -80,7 +81,7 @@ Outcome ended(json result, std::string text, bool was_interrupted, const std::st
 
 Result<Outcome> run_simulations(const AnnotateOptions& options, std::span<const CloudJob> jobs, Context& context) {
   const Executor& executor = context.executor();
-  AnnotateProgress progress{context.bar(), options.of_folder()};
+  AnnotateProgress progress{context.bar(), options.of_several()};
   const auto simulate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<SimulatedAnnotation> {
     SACCADE_TRY(const std::vector<std::uint32_t> truth, read_truth(options, job, cloud.points, progress));
     SACCADE_TRY(SimulatedAnnotation made, simulate_annotation(options, job, cloud.points, truth, executor, progress));
@@ -89,7 +90,7 @@ Result<Outcome> run_simulations(const AnnotateOptions& options, std::span<const 
   };
   SACCADE_TRY(const Run<SimulatedAnnotation> run, run_jobs<SimulatedAnnotation>(jobs, progress, simulate));
   const std::string kept = clouds_done(run.clouds.size(), jobs.size());
-  if (!options.of_folder()) {
+  if (!options.of_several()) {
     const SimulatedAnnotation& made = run.clouds.front().made;
     return ended(simulation_json(options, made), simulation_text(options, made), run.interrupted, kept);
   }
@@ -98,31 +99,59 @@ Result<Outcome> run_simulations(const AnnotateOptions& options, std::span<const 
                simulations_text(options, run.clouds), run.interrupted, kept);
 }
 
+/// Actions of each cloud: the lines of the script that are for it.
+Result<std::vector<PlannedActions>> actions_of_jobs(const AnnotateOptions& options, std::span<const CloudJob> jobs) {
+  SACCADE_TRY(PlannedActions all, planned_actions(options));
+  SACCADE_TRY(std::vector<std::vector<ScriptedAction>> lines,
+              lines_of_clouds(std::move(all.script), jobs, options.script));
+  std::vector<PlannedActions> actions(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    actions[i] = {all.presets, std::move(lines[i]), options.carry && i > 0, {}};
+  }
+  return actions;
+}
+
 Result<Outcome> run_annotations(const AnnotateOptions& options, std::span<const CloudJob> jobs, Context& context) {
   const Executor& executor = context.executor();
-  AnnotateProgress progress{context.bar(), options.of_folder()};
-  SACCADE_TRY(const PlannedActions actions, planned_actions(options));
+  AnnotateProgress progress{context.bar(), options.of_several()};
+  SACCADE_TRY(std::vector<PlannedActions> actions, actions_of_jobs(options, jobs));
+  std::size_t lines{0};
+  std::size_t lines_done{0};
+  for (const PlannedActions& of_cloud : actions) lines += of_cloud.script.size();
   bool cut_short{false};
+  std::optional<DoneClouds> done;
+  if (options.is_sequence()) done.emplace(jobs);
   const auto annotate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<AnnotatedCloud> {
+    PlannedActions& planned = actions[static_cast<std::size_t>(&job - jobs.data())];
     std::error_code ignored;
     const bool begun = !job.session.empty() && fs::exists(job.session, ignored);
-    if (options.of_folder() && !begun && job.seeds.empty()) return untouched(cloud);
-    SACCADE_TRY(AnnotatedCloud made, annotate_cloud(options, job, actions, cloud, executor, progress));
-    cut_short = cut_short || made.interrupted;
-    if (!made.interrupted) SACCADE_CHECK(write_label_files(job.files, cloud, made.labels, executor));
+    const bool is_asked = options.is_sequence() && !planned.empty();
+    AnnotatedCloud made = untouched(cloud);
+    if (done && !planned.empty()) {
+      planned.before = done->source_for(job, cloud);
+      std::vector<NumberedLabel> shared = done->labels();
+      shared.insert(shared.end(), planned.presets.begin(), planned.presets.end());
+      planned.presets = std::move(shared);
+    }
+    if (!options.of_several() || begun || is_asked || !job.seeds.empty()) {
+      SACCADE_TRY(made, annotate_cloud(options, job, planned, cloud, executor, progress));
+      lines_done += made.action_ms.size();
+      cut_short = cut_short || made.interrupted;
+      if (!made.interrupted) SACCADE_CHECK(write_label_files(job.files, cloud, made.labels, executor));
+    }
+    if (done) done->add(job, cloud, made);
     return made;
   };
   SACCADE_TRY(const Run<AnnotatedCloud> run, run_jobs<AnnotatedCloud>(jobs, progress, annotate));
-  if (options.of_folder()) {
+  if (options.of_several()) {
     return ended({{"clouds", clouds_json(run, annotation_json)}, {"mean", mean_json(run.clouds)}},
                  annotations_text(run.clouds), run.interrupted || cut_short,
                  clouds_done(run.clouds.size(), jobs.size()));
   }
   const AnnotatedCloud& made = run.clouds.front().made;
   return ended(annotation_json(made), annotation_text(options, made), run.interrupted || cut_short,
-               std::to_string(made.action_ms.size()) + " of " + std::to_string(actions.script.size()) +
-                   " actions were done" + (options.session.empty() ? "" : " and are in the session") +
-                   "; no other file was written");
+               std::to_string(lines_done) + " of " + std::to_string(lines) + " actions were done" +
+                   (options.session.empty() ? "" : " and are in the session") + "; no other file was written");
 }
 
 class Annotate final : public Command {
@@ -137,16 +166,19 @@ class Annotate final : public Command {
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     if (annotate_.opens_page()) return open_page(context);
-    SACCADE_TRY(const std::vector<CloudJob> jobs, plan_jobs(annotate_));
-    SACCADE_CHECK(check_outputs(annotate_, jobs, context.global()));
-    return annotate_.truth.empty() ? run_annotations(annotate_, jobs, context)
-                                   : run_simulations(annotate_, jobs, context);
+    SACCADE_TRY(const JobList list, plan_jobs(annotate_));
+    SACCADE_CHECK(check_outputs(annotate_, list.jobs, context.global()));
+    for (const std::string& note : list.notes) context.bar().note(note);
+    return annotate_.truth.empty() ? run_annotations(annotate_, list.jobs, context)
+                                   : run_simulations(annotate_, list.jobs, context);
   }
 
  private:
   [[nodiscard]] Result<Outcome> open_page(Context& context) {
     SACCADE_TRY(page_, AnnotatePage::open(annotate_, context.global()));
-    return Outcome{.result = page_->result(), .afterwards = [this] {
+    json result = page_->result();
+    for (const json& note : result.value("notes", json::array())) context.bar().note(note.get<std::string>());
+    return Outcome{.result = std::move(result), .afterwards = [this] {
                      page_->serve();
                      page_.reset();
                    }};
@@ -164,7 +196,7 @@ Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> j
     std::error_code ignored;
     return file.empty() || taken.insert(fs::weakly_canonical(file, ignored)).second;
   };
-  for (const fs::path& file : {options.script, options.presets}) take(file);
+  for (const fs::path& file : {options.script, options.presets, options.poses}) take(file);
   for (const CloudJob& job : jobs) {
     for (const fs::path& file : {job.cloud, job.truth, job.session, job.seeds}) take(file);
   }

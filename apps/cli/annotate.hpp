@@ -17,9 +17,11 @@
 #include "command.hpp"
 #include "progress_bar.hpp"
 #include "saccade/annotate/annotation_margin.hpp"
-#include "saccade/annotate/neighbourhood.hpp"
+#include "saccade/annotate/carried_labels.hpp"
+#include "saccade/annotate/graph_room.hpp"
 #include "saccade/annotate/simulated_annotator.hpp"
 #include "saccade/core/names.hpp"
+#include "saccade/core/pose.hpp"
 #include "saccade/io/sessions/annotation_script.hpp"
 #include "serve.hpp"
 
@@ -36,11 +38,19 @@ enum class Tens { detect, merge, keep };
 inline constexpr auto kTensNames =
     make_names<Tens>({{Tens::detect, "detect"}, {Tens::merge, "merge"}, {Tens::keep, "keep"}});
 
+/// Format of boxes in a folder of them.
+enum class BoxFormat { json, kitti };
+inline constexpr auto kBoxFormatNames = make_names<BoxFormat>({{BoxFormat::json, "json"}, {BoxFormat::kitti, "kitti"}});
+
 /// An option of the graph that was given: what is to be said where a session's graph has another value.
 using GivenGraphOption = std::function<std::optional<std::string>(const NeighbourhoodConfig& saved)>;
 
 struct AnnotateOptions {
-  std::filesystem::path cloud;  ///< or a folder of clouds; the paths below are then folders, too, but for names
+  std::vector<std::filesystem::path> clouds;  ///< or one folder of clouds
+  std::filesystem::path cloud;  ///< the first; where there are several, the paths below are folders, but for names
+  std::filesystem::path poses;  ///< poses of the clouds
+  bool sequence{false};         ///< a folder without poses is one, too
+  bool carry{false};            ///< each cloud takes labels from the one before it
   std::filesystem::path truth;  ///< labels of the simulated annotator
   Tens tens{Tens::detect};
   int clicks{4};                       ///< per label
@@ -50,20 +60,27 @@ struct AnnotateOptions {
   std::filesystem::path script;
   std::filesystem::path session;
   std::filesystem::path presets;
-  std::uint64_t client{0};      ///< does the actions in the script that name no client
-  std::filesystem::path seeds;  ///< labels to begin with
-  double seed_share{0.99};      ///< share of the seeds that control points give back
-  std::filesystem::path out;    ///< labels
-  std::filesystem::path names;  ///< names of labels
+  std::uint64_t client{0};         ///< does the actions in the script that name no client
+  std::filesystem::path seeds;     ///< labels to begin with
+  std::filesystem::path segments;  ///< labels of points, to be accepted segment by segment
+  double seed_share{0.99};         ///< share of the seeds that control points give back
+  std::filesystem::path out;       ///< labels
+  std::filesystem::path names;     ///< names of labels
   std::filesystem::path picture;
   std::filesystem::path margins;  ///< the cloud with how sure the label of each point is
   std::filesystem::path boxes;    ///< boxes around the labels
+  BoxFormat boxes_as{BoxFormat::json};
   NeighbourhoodConfig graph;
+  GraphRoom room;
   std::vector<GivenGraphOption> given_graph;
-  bool page{false};  ///< opened also where there is something else to do
+  std::size_t tiles_above_points{4'000'000};  ///< larger clouds are sent to the page in tiles
+  bool page{false};                           ///< opened also where there is something else to do
   ServeOptions serve;
 
   [[nodiscard]] bool of_folder() const;
+  [[nodiscard]] bool of_several() const;
+  /// Clouds seen one after the other: labels are carried between them, and mean the same in all.
+  [[nodiscard]] bool is_sequence() const;
   /// A person annotates; else it is done without one.
   [[nodiscard]] bool opens_page() const;
 };
@@ -71,12 +88,12 @@ struct AnnotateOptions {
 /// Shows the work on one cloud, or the number of clouds of a folder that are done. Says every note once.
 class AnnotateProgress {
  public:
-  AnnotateProgress(ProgressBar& bar, bool of_folder) : bar_{bar}, of_folder_{of_folder} {}
+  AnnotateProgress(ProgressBar& bar, bool of_several) : bar_{bar}, of_several_{of_several} {}
   void stage(std::string_view name, std::size_t done = 0, std::size_t total = 0) {
-    if (!of_folder_) bar_.update(name, done, total);
+    if (!of_several_) bar_.update(name, done, total);
   }
   void clouds(std::size_t done, std::size_t total) {
-    if (of_folder_) bar_.update("clouds", done, total);
+    if (of_several_) bar_.update("clouds", done, total);
   }
   void note(const std::string& line) {
     if (noted_.insert(line).second) bar_.note(line);
@@ -84,7 +101,7 @@ class AnnotateProgress {
 
  private:
   ProgressBar& bar_;
-  bool of_folder_;
+  bool of_several_;
   std::set<std::string> noted_;
 };
 
@@ -94,7 +111,15 @@ struct CloudJob {
   std::filesystem::path truth;
   std::filesystem::path session;
   std::filesystem::path seeds;
+  std::filesystem::path segments;
   LabelFiles files;
+  Pose T_world_cloud{Pose::Identity()};  ///< from the coordinates of the cloud's file
+};
+
+/// What is to be done, cloud by cloud.
+struct JobList {
+  std::vector<CloudJob> jobs;
+  std::vector<std::string> notes;  ///< to be said
 };
 
 void add_annotate_options(CLI::App& command, AnnotateOptions& options);
@@ -105,9 +130,9 @@ void check_annotate_options(const AnnotateOptions& options);
 [[nodiscard]] std::filesystem::path labels_beside(const std::filesystem::path& folder,
                                                   const std::filesystem::path& cloud);
 
-/// One cloud, or all of a folder in the order of their names. Errors of list_clouds; not_found for truth that is not
-/// there; invalid_argument where two clouds would share a file.
-[[nodiscard]] Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options);
+/// One cloud, or all of a folder or a sequence in their order. Errors of list_clouds and read_cloud_poses; not_found
+/// for truth that is not there; invalid_argument where two clouds would share a file.
+[[nodiscard]] Result<JobList> plan_jobs(const AnnotateOptions& options);
 
 /// No file that is written is one of those that are read, or another one that is written.
 [[nodiscard]] Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs,
@@ -171,7 +196,9 @@ struct SeedOutcome {
 struct AnnotatedCloud {
   std::size_t points{0};  ///< that are finite
   LabelledPoints labels;
-  std::uint64_t actions{0};  ///< since the annotation began
+  std::vector<NumberedLabel> defined;  ///< what is known about labels
+  std::size_t carried{0};              ///< points that took labels of the cloud before
+  std::uint64_t actions{0};            ///< since the annotation began
   std::optional<SeedOutcome> seeds;
   std::optional<BestClick> next;    ///< where margins are asked for
   Eigen::Vector3d next_m{0, 0, 0};  ///< its place
@@ -186,7 +213,9 @@ struct AnnotatedCloud {
 struct PlannedActions {
   std::vector<NumberedLabel> presets;
   std::vector<ScriptedAction> script;
-  [[nodiscard]] bool empty() const { return presets.empty() && script.empty(); }
+  bool carry{false};                  ///< before the script, where a point takes a label
+  std::optional<CarrySource> before;  ///< cloud whose labels are carried
+  [[nodiscard]] bool empty() const { return presets.empty() && script.empty() && !carry; }
 };
 
 /// The annotation so far, of the job's session, with the actions done on it, after those of seeds. Where there are

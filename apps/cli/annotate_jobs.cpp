@@ -4,6 +4,7 @@
 #include <map>
 
 #include "annotate.hpp"
+#include "annotate_sequence.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -57,6 +58,13 @@ Status check_stems(const std::vector<fs::path>& clouds) {
   return {};
 }
 
+/// Returns several clouds in their order.
+Result<std::vector<fs::path>> clouds_of(const AnnotateOptions& options) {
+  if (!options.of_folder()) return in_number_order(options.clouds, false);
+  SACCADE_TRY(std::vector<fs::path> clouds, list_clouds(options.cloud));
+  return options.is_sequence() ? in_number_order(std::move(clouds), true) : std::move(clouds);
+}
+
 Status make_folder(const fs::path& folder) {
   if (folder.empty()) return {};
   std::error_code code;
@@ -76,36 +84,46 @@ std::filesystem::path labels_beside(const fs::path& folder, const fs::path& clou
   return named_after(folder, cloud, suffix == ".pts" ? ".txt" : suffix);
 }
 
-Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options) {
+Result<JobList> plan_jobs(const AnnotateOptions& options) {
   const LabelFiles files{options.out, options.names, options.picture, options.margins, options.boxes};
-  if (!options.of_folder()) {
-    CloudJob job{options.cloud, options.truth, options.session, options.seeds, files};
+  if (!options.of_several()) {
+    CloudJob job{options.cloud, options.truth, options.session, options.seeds, options.segments, files};
     if (is_folder(options.session)) job.session = named_after(options.session, options.cloud, kSessionSuffix);
-    return std::vector{std::move(job)};
+    return JobList{{std::move(job)}, {}};
   }
-  SACCADE_TRY(const std::vector<fs::path> clouds, list_clouds(options.cloud));
+  JobList list;
+  SACCADE_TRY(const std::vector<fs::path> clouds, clouds_of(options));
   SACCADE_CHECK(check_stems(clouds));
-  for (const fs::path& folder : {options.truth, options.session, options.seeds}) {
-    if (folder.empty() || is_folder(folder)) continue;
-    return Error{Errc::not_found, "is not a folder, as it must be for a folder of clouds", folder.string()};
+  std::vector<Pose> poses(clouds.size(), Pose::Identity());
+  if (!options.poses.empty()) {
+    SACCADE_TRY(poses, read_cloud_poses(options.poses, clouds, list.notes));
   }
-  std::vector<CloudJob> jobs;
-  for (const fs::path& cloud : clouds) {
-    CloudJob job{cloud, {}, {}, {}, {}};
+  for (const fs::path& folder : {options.truth, options.session, options.seeds, options.segments}) {
+    if (folder.empty() || is_folder(folder)) continue;
+    return Error{Errc::not_found, "is not a folder, as it must be for several clouds", folder.string()};
+  }
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    const fs::path& cloud = clouds[i];
+    CloudJob job{cloud, {}, {}, {}, {}, {}, poses[i]};
     if (!options.truth.empty()) {
       SACCADE_TRY(job.truth, truth_of(options.truth, cloud));
     }
     if (!options.seeds.empty()) {
       SACCADE_TRY(job.seeds, truth_of(options.seeds, cloud));
     }
+    if (!options.segments.empty()) {
+      SACCADE_TRY(job.segments, truth_of(options.segments, cloud));
+    }
     if (!options.session.empty()) job.session = named_after(options.session, cloud, kSessionSuffix);
     if (!files.out.empty()) job.files.out = labels_beside(files.out, cloud);
     if (!files.picture.empty()) job.files.picture = named_after(files.picture, cloud, ".png");
-    jobs.push_back(std::move(job));
+    if (!files.boxes.empty()) {
+      job.files.boxes = named_after(files.boxes, cloud, options.boxes_as == BoxFormat::json ? ".json" : ".txt");
+    }
+    list.jobs.push_back(std::move(job));
   }
-  SACCADE_CHECK(make_folder(files.out));
-  SACCADE_CHECK(make_folder(files.picture));
-  return jobs;
+  for (const fs::path& folder : {files.out, files.picture, files.boxes}) SACCADE_CHECK(make_folder(folder));
+  return list;
 }
 
 }  // namespace saccade::cli

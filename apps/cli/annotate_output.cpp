@@ -157,6 +157,7 @@ json annotation_json(const AnnotatedCloud& cloud) {
                  {{"count", action_ms.size()},
                   {"median", median(action_ms)},
                   {"max", action_ms.empty() ? 0.0 : *std::max_element(action_ms.begin(), action_ms.end())}}}}}};
+  if (cloud.carried > 0) result["carried"] = cloud.carried;
   if (cloud.next) {
     json& next = result["next_best_click"];
     next = {{"point", cloud.next->point}, {"position_m", point_json(cloud.next_m)}, {"settles", cloud.next->gain}};
@@ -248,6 +249,7 @@ std::string annotation_text(const AnnotateOptions& options, const AnnotatedCloud
                                    ", " + fixed(static_cast<double>(p.z()), 3) + " m settles about " +
                                    fixed(cloud.next->gain, 0) + " points");
   }
+  if (cloud.carried > 0) summary.line("carried", std::to_string(cloud.carried));
   if (cloud.seeds) {
     const double share = static_cast<double>(cloud.seeds->reproduced) / static_cast<double>(cloud.seeds->points);
     summary.line("seeds", std::to_string(cloud.seeds->control_points) + " control points, which give back " +

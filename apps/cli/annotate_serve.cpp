@@ -52,9 +52,10 @@ Status check_default_labels(const fs::path& file, const CloudJob& job) {
                "is there already, and would be replaced by the labels; name another place: --out", file.string()};
 }
 
-Result<std::vector<CloudJob>> plan_page(AnnotateOptions options, const GlobalOptions& global) {
+Result<JobList> plan_page(AnnotateOptions options, const GlobalOptions& global) {
   if (options.of_folder() && options.session.empty()) options.session = options.cloud;
-  SACCADE_TRY(std::vector<CloudJob> jobs, plan_jobs(options));
+  SACCADE_TRY(JobList list, plan_jobs(options));
+  std::vector<CloudJob>& jobs = list.jobs;
   for (CloudJob& job : jobs) {
     if (job.session.empty()) job.session = fs::path{job.cloud}.replace_extension(".sacann");
   }
@@ -66,7 +67,7 @@ Result<std::vector<CloudJob>> plan_page(AnnotateOptions options, const GlobalOpt
     }
     if (job.files.names.empty()) job.files.names = names_of(job.files.out);
   }
-  return jobs;
+  return list;
 }
 
 Result<server::AnnotationServiceConfig> service_config(const AnnotateOptions& options, std::span<const CloudJob> jobs,
@@ -74,27 +75,33 @@ Result<server::AnnotationServiceConfig> service_config(const AnnotateOptions& op
   server::AnnotationServiceConfig config;
   const fs::path shown = options.cloud.has_filename() ? options.cloud : options.cloud.parent_path();
   config.title = shown.filename().string();
+  if (options.clouds.size() > 1) config.title += " and " + std::to_string(options.clouds.size() - 1) + " more";
   config.version = SACCADE_VERSION;
+  config.is_sequence = options.is_sequence();
   config.threads = global.threads;
   config.start.graph = options.graph;
   config.start.checks = options.given_graph;
   config.start.seed_share = options.seed_share;
+  config.start.room = options.room;
+  config.start.tiles_above_points = options.tiles_above_points;
   if (!options.presets.empty()) {
     SACCADE_TRY(config.start.presets, read_label_presets(options.presets));
   }
   for (const CloudJob& job : jobs) {
-    config.clouds.push_back({job.cloud, job.session, job.seeds, job.files.out, job.files.names});
+    config.clouds.push_back(
+        {job.cloud, job.session, job.seeds, job.files.out, job.files.names, job.segments, job.T_world_cloud});
   }
   return config;
 }
 
 class ServedAnnotation final : public AnnotatePage {
  public:
-  ServedAnnotation(const AnnotateOptions& options, const GlobalOptions& global, std::vector<CloudJob> jobs,
+  ServedAnnotation(const AnnotateOptions& options, const GlobalOptions& global, JobList list,
                    server::AnnotationServiceConfig config, std::unique_ptr<server::HttpServer> server)
       : options_{options},
         global_{global},
-        jobs_{std::move(jobs)},
+        jobs_{std::move(list.jobs)},
+        notes_{std::move(list.notes)},
         server_{std::move(server)},
         posts_{std::make_shared<ServerHandle>(*server_)},
         service_{std::move(config), *server_,
@@ -118,7 +125,9 @@ class ServedAnnotation final : public AnnotatePage {
       clouds.push_back(
           {{"file", job.cloud.string()}, {"session", job.session.string()}, {"labels", job.files.out.string()}});
     }
-    return {{"clouds", std::move(clouds)}};
+    json result{{"clouds", std::move(clouds)}};
+    if (!notes_.empty()) result["notes"] = notes_;
+    return result;
   }
 
   void serve() override { cli::serve(options_.serve, global_, *server_, service_); }
@@ -127,6 +136,7 @@ class ServedAnnotation final : public AnnotatePage {
   const AnnotateOptions& options_;
   const GlobalOptions& global_;
   std::vector<CloudJob> jobs_;
+  std::vector<std::string> notes_;
   std::unique_ptr<server::HttpServer> server_;
   std::shared_ptr<ServerHandle> posts_;
   server::AnnotationService service_;
@@ -139,12 +149,12 @@ bool AnnotateOptions::opens_page() const {
 }
 
 Result<std::unique_ptr<AnnotatePage>> AnnotatePage::open(const AnnotateOptions& options, const GlobalOptions& global) {
-  SACCADE_TRY(std::vector<CloudJob> jobs, plan_page(options, global));
-  SACCADE_TRY(server::AnnotationServiceConfig config, service_config(options, jobs, global));
+  SACCADE_TRY(JobList list, plan_page(options, global));
+  SACCADE_TRY(server::AnnotationServiceConfig config, service_config(options, list.jobs, global));
   SACCADE_TRY(std::unique_ptr<server::HttpServer> server, listen(options.serve));
   auto page =
-      std::make_unique<ServedAnnotation>(options, global, std::move(jobs), std::move(config), std::move(server));
-  if (!options.of_folder()) SACCADE_CHECK(page->prepare());
+      std::make_unique<ServedAnnotation>(options, global, std::move(list), std::move(config), std::move(server));
+  if (!options.of_several()) SACCADE_CHECK(page->prepare());
   return std::unique_ptr<AnnotatePage>{std::move(page)};
 }
 

@@ -119,8 +119,30 @@ Error failed_at(Error error, const ScriptedAction& scripted, const fs::path& scr
   return in_file(std::move(error), script);
 }
 
-Status replay(const AnnotateOptions& options, std::span<const ScriptedAction> script, const LoadedCloud& cloud,
+/// Takes the labels of the cloud before, where points have none.
+Status carry_on(const AnnotateOptions& options, const CarrySource* before, const LoadedCloud& cloud,
+                OpenAnnotation& annotation, AnnotatedCloud& made, const Executor& executor,
+                AnnotateProgress& progress) {
+  if (before == nullptr) return {};
+  progress.stage("carrying");
+  SACCADE_TRY(CarriedLabels carried,
+              carry_labels(*before, cloud.points.positions_m, annotation.annotation(), CarryConfig{}, executor));
+  made.carried = carried.paint.points.size();
+  if (made.carried == 0) return {};
+  const auto applied = annotation.apply({options.client, std::move(carried.paint)});
+  return applied ? Status{} : applied.error();
+}
+
+/// Subject of the lines of a script.
+struct CloudInScript {
+  const LoadedCloud& cloud;
+  std::span<const std::uint32_t> segments;
+  const CarrySource* before;
+};
+
+Status replay(const AnnotateOptions& options, std::span<const ScriptedAction> script, const CloudInScript& subject,
               OpenAnnotation& annotation, AnnotatedCloud& made, const Executor& executor, AnnotateProgress& progress) {
+  const LoadedCloud& cloud = subject.cloud;
   for (const ScriptedAction& scripted : script) {
     if (interrupted()) {
       made.interrupted = true;
@@ -129,10 +151,11 @@ Status replay(const AnnotateOptions& options, std::span<const ScriptedAction> sc
     progress.stage("actions", made.action_ms.size(), script.size());
     const Stopwatch stopwatch;
     auto action = resolve_action(scripted, cloud.points.positions_m, annotation.annotation(), options.client, executor,
-                                 cloud.points.offset_m);
+                                 cloud.points.offset_m, subject.segments, subject.before);
     if (!action)
       return failed_at(action.error(), scripted, options.script, made.action_ms.size(), annotation.is_kept());
     const std::uint64_t client = action->client;
+    if (const auto* paint = std::get_if<PaintLabels>(&action->change)) made.carried += paint->points.size();
     const auto applied = annotation.apply(std::move(*action));
     if (!applied)
       return failed_at(applied.error(), scripted, options.script, made.action_ms.size(), annotation.is_kept());
@@ -187,26 +210,36 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
   if (!checked) return in_file(checked.error(), options.script);
   progress.stage("graph");
   const Stopwatch stopwatch;
-  SACCADE_TRY(Neighbourhood built, in_file(Neighbourhood::build(cloud.points, config, executor), job.cloud));
+  SACCADE_TRY(Neighbourhood built, in_file(build_graph(cloud.points, config, options.room, executor), job.cloud));
   const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
   AnnotatedCloud made = untouched(cloud);
   made.graph_ms = stopwatch.elapsed_ms();
   SACCADE_TRY(std::optional<LabelSeeds> seeds, seeds_of(options, job, cloud, graph, progress));
-  std::optional<std::size_t> before{0};
-  if (seeds && saved) before = server::planted_before(*seeds, options.client, saved->actions);
-  if (!before && !options.of_folder()) {
+  std::optional<std::size_t> planted{0};
+  if (seeds && saved) planted = server::planted_before(*seeds, options.client, saved->actions);
+  if (!planted && !options.of_several()) {
     return Error{Errc::invalid_argument,
                  "holds " + std::to_string(saved->actions.size()) +
                      " actions already; seeds begin a session: leave --seeds out, or name another file",
                  job.session.string()};
   }
-  if (!before) seeds.reset();  // a folder's seeds begin what is not begun
+  if (!planted) seeds.reset();  // a folder's seeds begin what is not begun
   const bool changes = !actions.empty() || seeds;
   SACCADE_TRY(OpenAnnotation annotation, open_annotation(job, changes, cloud, saved, graph, executor));
-  if (seeds) SACCADE_CHECK(plant_seeds(*seeds, *before, options.client, annotation, made));
+  if (seeds) SACCADE_CHECK(plant_seeds(*seeds, *planted, options.client, annotation, made));
   SACCADE_CHECK(define_presets(actions.presets, options.client, annotation));
-  SACCADE_CHECK(replay(options, actions.script, cloud, annotation, made, executor, progress));
+  std::vector<std::uint32_t> segments;
+  if (!job.segments.empty()) {
+    SACCADE_TRY(segments, read_labels(job.segments, cloud.points.positions_m.size()));
+  }
+  const CarrySource* before = actions.before ? &*actions.before : nullptr;
+  if (actions.carry) SACCADE_CHECK(carry_on(options, before, cloud, annotation, made, executor, progress));
+  const CloudInScript in_script{cloud, segments, before};
+  SACCADE_CHECK(replay(options, actions.script, in_script, annotation, made, executor, progress));
   made.labels = labelled_points(annotation.annotation());
+  for (const auto& [number, info] : annotation.annotation().label_table().defined()) {
+    made.defined.push_back({number, info});
+  }
   made.actions = annotation.annotation().history().size();
   if (!options.margins.empty()) find_margins(annotation.annotation(), cloud, made, progress);
   return made;

@@ -47,6 +47,10 @@ Status click(const AnnotateOptions& options, const CloudJob& job, std::shared_pt
              AnnotateProgress& progress) {
   SACCADE_TRY(SimulatedAnnotator annotator,
               in_file(SimulatedAnnotator::create(std::move(graph), cloud, truth), job.truth));
+  if (!job.segments.empty()) {
+    SACCADE_TRY(std::vector<std::uint32_t> segments, read_labels(job.segments, cloud.positions_m.size()));
+    annotator.offer_segments(std::move(segments));
+  }
   const std::size_t clicks = most_actions(options, annotation);
   const std::optional<std::uint32_t> background = background_of(options, truth);
   while (annotation.clicks.size() < clicks) {
@@ -54,7 +58,7 @@ Status click(const AnnotateOptions& options, const CloudJob& job, std::shared_pt
     progress.stage("clicks", annotation.clicks.size(), clicks);
     const std::optional<SimulatedClick> next = annotator.next();
     if (!next) break;
-    annotation.add_ms.push_back(next->add_ms);
+    if (!next->segment) annotation.add_ms.push_back(next->add_ms);
     SACCADE_TRY(const AnnotationScore score, score_annotation(annotator.labels(), truth, background));
     annotation.clicks.push_back({next->label, score.mean_iou, score.wrong});
   }
@@ -138,7 +142,7 @@ Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, 
   annotation.objects = none.objects.size();
   progress.stage("graph");
   const Stopwatch stopwatch;
-  SACCADE_TRY(Neighbourhood built, in_file(Neighbourhood::build(cloud, options.graph, executor), job.cloud));
+  SACCADE_TRY(Neighbourhood built, in_file(build_graph(cloud, options.graph, options.room, executor), job.cloud));
   annotation.graph_ms = stopwatch.elapsed_ms();
   const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
   if (options.method == AnnotationMethod::control_points) {

@@ -8,7 +8,6 @@
 
 #include "saccade/cloud/label_boxes.hpp"
 #include "saccade/cloud/nearest_neighbours.hpp"
-#include "saccade/io/clouds/cloud_upright.hpp"
 #include "saccade/io/clouds/label_boxes_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/segment_picture.hpp"
@@ -45,15 +44,6 @@ std::vector<Eigen::Vector3f> normals_of(const PointCloud& cloud, const NearestNe
   return normals;
 }
 
-/// Boxes stand upright; those of KITTI, which know no tilt, along the axis of the cloud's frame nearest to up.
-Eigen::Vector3d box_up(const LoadedCloud& cloud, bool has_tilt) {
-  const Upright upright = upright_of(cloud.file, cloud.points.positions_m);
-  if (has_tilt) return upright.up;
-  Eigen::Index axis{0};
-  upright.up.cwiseAbs().maxCoeff(&axis);
-  return std::copysign(1.0, upright.up[axis]) * Eigen::Vector3d::Unit(axis);
-}
-
 std::string legend_text(const NamedLabel& label) {
   return std::to_string(label.number) + (label.name.empty() ? "" : " " + label.name);
 }
@@ -73,7 +63,8 @@ ColorImage picture_of(const LoadedCloud& cloud, const LabelledPoints& labels, co
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (labels.labels[i] != kNoLabel) drawn[i] = places.at(labels.labels[i]);
   }
-  const Viewpoint view = upright_view_of(positions_m, upright_of(cloud.file, positions_m), kWidth_px, kHeight_px);
+  const Viewpoint view =
+      upright_view_of(positions_m, find_upright(positions_m, cloud.upright_hints), kWidth_px, kHeight_px);
   const NearestNeighbours near = nearest_neighbours(positions_m, kNeighbours, executor);
   const std::vector<Eigen::Vector3f> normals = normals_of(cloud.points, near, executor);
   const DrawnSegments segments{positions_m, normals, drawn, {}, spacing_of(near)};
@@ -90,15 +81,19 @@ ColorImage picture_of(const LoadedCloud& cloud, const LabelledPoints& labels, co
 Status write_label_files(const LabelFiles& files, const LoadedCloud& cloud, const LabelledPoints& labels,
                          const Executor& executor) {
   const std::vector<NamedLabel> names = labels.names();
-  if (!files.out.empty()) SACCADE_CHECK(write_labels(files.out, cloud.file, labels.labels, names));
+  std::shared_ptr<const CloudFile> fields;
+  if (!files.out.empty() || !files.margins.empty()) {
+    SACCADE_TRY(fields, cloud.fields.file());
+  }
+  if (!files.out.empty()) SACCADE_CHECK(write_labels(files.out, *fields, labels.labels, names));
   if (!files.names.empty()) SACCADE_CHECK(server::write_names(files.names, names));
   if (!files.margins.empty()) {
-    CloudFile with_margins = cloud.file;
+    CloudFile with_margins = *fields;
     add_number_field(with_margins, "margin", labels.margins);
     SACCADE_CHECK(write_cloud(files.margins, with_margins));
   }
   if (!files.boxes.empty()) {
-    const Eigen::Vector3d up = box_up(cloud, files.boxes.extension() == ".json");
+    const Eigen::Vector3d up = server::box_up(cloud, files.boxes.extension() == ".json");
     const std::vector<LabelBox> boxes = label_boxes(cloud.points.positions_m, labels.labels, up);
     SACCADE_CHECK(write_label_boxes(files.boxes, boxes, names, cloud.points.offset_m));
   }

@@ -29,7 +29,8 @@ struct GlobalOptions {
   std::size_t threads{0};  ///< 0: all cores
   std::uint64_t seed{1};
   bool quiet{false};
-  std::string json;  ///< a file, "-" for standard output, or empty
+  std::string json;                      ///< a file, "-" for standard output, or empty
+  std::vector<std::string> arguments{};  ///< the command line after the program's name, as it was given
 
   [[nodiscard]] Executor executor() const { return Executor::with_threads(threads); }
   [[nodiscard]] bool json_to_stdout() const { return json == "-"; }
@@ -91,8 +92,8 @@ void add_command(CLI::App& program, const GlobalOptions& global, Action& action)
 /// Adds a subcommand. `global` and `action` outlive the parsing. Options are checked while they are parsed; what is
 /// wrong with them is thrown as CLI::ValidationError.
 using AddCommand = void(CLI::App& program, const GlobalOptions& global, Action& action);
-AddCommand add_annotate, add_attend, add_calibrate, add_cell, add_compare, add_explore, add_filter, add_fuse,
-    add_generate, add_info, add_nbv, add_reproduce, add_robot, add_sample, add_scene, add_score, add_segment, add_show,
-    add_surfels, add_update;
+AddCommand add_annotate, add_attend, add_benchmark, add_calibrate, add_cell, add_compare, add_explore, add_filter,
+    add_fuse, add_generate, add_info, add_nbv, add_reproduce, add_robot, add_sample, add_scene, add_score, add_segment,
+    add_show, add_surfels, add_update;
 
 }  // namespace saccade::cli

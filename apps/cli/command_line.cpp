@@ -82,6 +82,7 @@ std::string parse_problem(const CLI::App& program, const CLI::ParseError& error)
 int run(int argc, char** argv, CLI::App& program, Planners planners) {
   GlobalOptions global;
   global.planners = std::move(planners);
+  if (argc > 1) global.arguments.assign(argv + 1, argv + argc);
   Action action;
   program.set_version_flag("--version", std::string{"saccade "}.append(version()));
   program.require_subcommand(1);
@@ -89,9 +90,10 @@ int run(int argc, char** argv, CLI::App& program, Planners planners) {
   program.footer(kFooter);
   program.formatter(std::make_shared<HelpFormatter>());
   add_global_options(program, global);
-  for (AddCommand* add : {add_annotate, add_attend,   add_calibrate, add_cell,   add_compare, add_explore,   add_filter,
-                          add_fuse,     add_generate, add_nbv,       add_info,   add_scene,   add_reproduce, add_robot,
-                          add_score,    add_segment,  add_show,      add_sample, add_surfels, add_update}) {
+  for (AddCommand* add :
+       {add_annotate, add_attend, add_benchmark, add_calibrate, add_cell,   add_compare, add_explore,
+        add_filter,   add_fuse,   add_generate,  add_nbv,       add_info,   add_scene,   add_reproduce,
+        add_robot,    add_score,  add_segment,   add_show,      add_sample, add_surfels, add_update}) {
     add(program, global, action);
   }
   refuse_empty_values(program);

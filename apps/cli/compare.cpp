@@ -5,9 +5,10 @@
 #include <iomanip>
 #include <sstream>
 
-#include "compare_jobs.hpp"
 #include "compare_report.hpp"
-#include "comparison.hpp"
+#include "compare_run.hpp"
+#include "compare_shards.hpp"
+#include "compare_slurm.hpp"
 #include "context.hpp"
 #include "server/report_file.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kCampaignFile{"campaign.sqlite"};
 constexpr const char* kReportFile{"index.html"};
 
 json planned_json(const Comparison& comparison, const PlannedRun& run) {
@@ -34,14 +34,10 @@ int column_width(const Items& items, const Name& name) {
   return static_cast<int>(width) + 2;
 }
 
-/// Writes nothing and makes no folder.
+/// Writes nothing, and makes no folder.
 Result<Outcome> list_runs(const Comparison& comparison) {
-  const std::filesystem::path path = comparison.options().out / kCampaignFile;
-  std::optional<Campaign> campaign;
-  if (std::filesystem::exists(path)) {
-    SACCADE_TRY(campaign, Campaign::open(path));
-  }
-  SACCADE_TRY(const std::vector<PlannedRun> runs, comparison.plan(campaign ? &*campaign : nullptr));
+  SACCADE_TRY(const CampaignIndex done, done_in(comparison.options().out, {}));
+  const std::vector<PlannedRun> runs = comparison.plan(done);
   json rows = json::array();
   std::ostringstream text;
   text << std::left;
@@ -59,7 +55,7 @@ Result<Outcome> list_runs(const Comparison& comparison) {
   return Outcome{.result = {{"runs", std::move(rows)}}, .text = text.str()};
 }
 
-json result_json(const Comparison& comparison, std::size_t planned, std::size_t now, const ComparedRuns& compared) {
+json result_json(const Comparison& comparison, std::size_t planned, const ComparedRuns& compared) {
   const CompareOptions& options = comparison.options();
   json result = comparison_json(compared);
   result["out"] = options.out.string();
@@ -68,7 +64,7 @@ json result_json(const Comparison& comparison, std::size_t planned, std::size_t 
   result["max_views"] = compared.budget;
   result["equal_views"] = options.equal_views;
   result["seeds"] = options.seeds;
-  result["runs"] = {{"planned", planned}, {"done", compared.runs.size()}, {"done_now", now}};
+  result["runs"] = {{"planned", planned}, {"done", compared.runs.size()}};
   result["interrupted"] = compared.runs.size() < planned;
   return result;
 }
@@ -83,6 +79,7 @@ class Compare final : public Command {
 
   void declare(Options& options) override {
     options.folder({.help = "folder for the results; runs that are in it already are not repeated",
+                    .files = {kShardsFolder, kLogsFolder},
                     .marker = kCampaignFile,
                     .required = true,
                     .opened_by_command = true});
@@ -95,34 +92,77 @@ class Compare final : public Command {
     compare_.out = context.out();
     SACCADE_TRY(const Comparison comparison, Comparison::create(compare_));
     if (compare_.list) return list_runs(comparison);
-    SACCADE_CHECK(context.open_folder());
-    const RunFolder& out = *context.folder();
-    SACCADE_TRY(const Campaign campaign, Campaign::open(out / kCampaignFile));
-
-    for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
-    if (const std::string mixed = mixed_camera(compare_.run); !mixed.empty()) context.bar().note(mixed);
-    SACCADE_TRY(const std::size_t now, run_missing(comparison, campaign, context.executor().threads(), context.bar()));
-    SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(campaign));
-    const std::size_t done = runs.size();
-    const std::size_t planned =
-        comparison.scenes().size() * compare_.noises.size() * compare_.seeds.size() * compare_.strategies.size();
-    const ComparedRuns results = compared(std::move(runs), comparison.budget());
-    SACCADE_CHECK(write_comparison(out.path(), results));
-    std::ostringstream text;
-    print_comparison(text, results);
-    text << "runs      " << now << " done now, " << done - now << " found\n"
-         << "report    " << (out / kReportFile).string() << '\n';
-    Outcome outcome{.result = result_json(comparison, planned, now, results), .text = text.str()};
-    SACCADE_CHECK(server::write_report(out / kReportFile, context.document(outcome.result),
-                                       comparison_details(comparison, results)));
-    if (done < planned) {
-      outcome.cut_short = "interrupted after " + std::to_string(done) + " of " + std::to_string(planned) +
-                          " runs; they are in " + context.out().string() + "; the same command goes on from there";
-    }
-    return outcome;
+    if (compare_.status) return slice_status(comparison);
+    if (compare_.slice) return run_slice(context, comparison);
+    if (compare_.slurm) return submit_slices(context, comparison);
+    if (compare_.merge) return merge(context, comparison);
+    return run_here(context, comparison);
   }
 
  private:
+  /// Runs what is missing, on this machine.
+  static Result<Outcome> run_here(Context& context, const Comparison& comparison) {
+    SACCADE_TRY(const ComparisonRun done, run_comparison(context, comparison));
+    SACCADE_TRY(Outcome outcome, report(context, comparison, done.campaign, done.found, {{"done_now", done.now}}));
+    outcome.cut_short = cut_short(context, outcome.result.at("runs").at("done").get<std::size_t>(), done.planned);
+    return outcome;
+  }
+
+  static Result<Outcome> merge(Context& context, const Comparison& comparison) {
+    SACCADE_TRY(const std::vector<std::filesystem::path> shards, shards_to_merge(comparison.options()));
+    std::optional<Campaign> campaign;
+    const auto open = [&]() -> Result<const Campaign*> {
+      SACCADE_CHECK(context.open_folder());
+      SACCADE_TRY(campaign, Campaign::open(*context.folder() / kCampaignFile));
+      return &*campaign;
+    };
+    SACCADE_TRY(const CampaignMerge merged, merge_shards(comparison, shards, open));
+    CampaignIndex found;
+    SACCADE_CHECK(found.add(*campaign));
+    SACCADE_TRY(Outcome outcome,
+                report(context, comparison, *campaign, found,
+                       {{"merged_now", merged.added}, {"known", merged.known}, {"shards", shards.size()}}));
+    return outcome;
+  }
+
+  /// Writes tables, pictures and the page of what the campaign has.
+  /// @param found   all runs of the campaign
+  /// @param counts  what has been done now; goes to the runs of the result
+  static Result<Outcome> report(Context& context, const Comparison& comparison, const Campaign& campaign,
+                                const CampaignIndex& found, const json& counts) {
+    const RunFolder& out = *context.folder();
+    context.lap("runs");
+    SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(campaign, found));
+    context.lap("read");
+    const CompareOptions& options = comparison.options();
+    const std::size_t done = runs.size();
+    const std::size_t planned =
+        comparison.scenes().size() * options.noises.size() * options.seeds.size() * options.strategies.size();
+    const ComparedRuns results = compared(std::move(runs), comparison.budget());
+    context.lap("statistics");
+    SACCADE_CHECK(write_comparison(out.path(), results));
+    context.lap("tables");
+    std::ostringstream text;
+    print_comparison(text, results);
+    if (counts.contains("done_now")) {
+      const auto now = counts.at("done_now").get<std::size_t>();
+      text << "runs      " << now << " done now, " << done - now << " found\n";
+    } else {
+      text << "runs      " << counts.at("merged_now") << " merged now, " << counts.at("known") << " known, " << done
+           << " of " << planned << " in the campaign\n";
+    }
+    text << "report    " << (out / kReportFile).string() << '\n';
+    Outcome outcome{.result = result_json(comparison, planned, results), .text = text.str()};
+    outcome.result.at("runs").update(counts);
+    if (std::filesystem::exists(out / kShardsFolder)) {
+      SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, comparison.plan(found)));
+      outcome.result["slices"] = slices_json(slices);
+    }
+    SACCADE_CHECK(server::write_report(out / kReportFile, context.document(outcome.result),
+                                       comparison_details(comparison, results)));
+    return outcome;
+  }
+
   const Planners* planners_;
   CompareOptions compare_;
 };

@@ -42,9 +42,10 @@ std::vector<Chain> chains_of(const std::vector<PlannedRun>& runs, bool equal_vie
 
 class Jobs {
  public:
-  Jobs(const Comparison& comparison, const Campaign& campaign, const std::vector<PlannedRun>& runs, std::size_t threads,
-       ProgressBar& progress)
+  Jobs(const Comparison& comparison, const std::vector<PlannedRun>& runs, CampaignIndex& index,
+       const Campaign& campaign, std::size_t threads, ProgressBar& progress)
       : comparison_{comparison},
+        index_{index},
         campaign_{campaign},
         progress_{progress},
         total_{runs.size()},
@@ -121,8 +122,7 @@ class Jobs {
     PlannedRun run = before;
     {
       const std::lock_guard lock{mutex_};
-      // Sphere has been run by now.
-      SACCADE_TRY(run, comparison_.plan_again(campaign_, before));
+      run = comparison_.plan_again(index_, before);  // sphere has been run by now
       ++at_work_;
       report(run);
     }
@@ -135,6 +135,7 @@ class Jobs {
     --at_work_;
     if (entry.run.stopped_because == StopReason::cancelled) return {};
     SACCADE_CHECK(campaign_.add(entry));
+    index_.add(entry.key, entry.run.views.size());
     ++done_;
     return {};
   }
@@ -170,6 +171,7 @@ class Jobs {
   }
 
   const Comparison& comparison_;
+  CampaignIndex& index_;      ///< under mutex_
   const Campaign& campaign_;  ///< under mutex_
   ProgressBar& progress_;
   std::size_t total_;
@@ -192,10 +194,9 @@ class Jobs {
 
 }  // namespace
 
-Result<std::size_t> run_missing(const Comparison& comparison, const Campaign& campaign, std::size_t threads,
-                                ProgressBar& progress) {
-  SACCADE_TRY(const std::vector<PlannedRun> runs, comparison.plan(&campaign));
-  Jobs jobs{comparison, campaign, runs, threads, progress};
+Result<std::size_t> run_missing(const Comparison& comparison, const std::vector<PlannedRun>& runs, CampaignIndex& found,
+                                const Campaign& campaign, std::size_t threads, ProgressBar& progress) {
+  Jobs jobs{comparison, runs, found, campaign, threads, progress};
   if (jobs.found() > 0) {
     progress.note(std::to_string(jobs.found()) + " of " + std::to_string(runs.size()) + " runs found in " +
                   campaign.path().string());

@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <set>
@@ -41,7 +43,6 @@ constexpr std::uint64_t kMostInRange{100000};
 constexpr std::string_view kClutter{"clutter:"};
 constexpr auto kNoiseNames = make_names<std::optional<DepthSensor>>(
     {{std::nullopt, "none"}, {DepthSensor::kinect_v1, "kinect-v1"}, {DepthSensor::kinect_v2, "kinect-v2"}});
-constexpr std::string_view kNoNoise{"none"};
 
 /// "3" and "1-10"; nullopt for anything else.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> seed_range(std::string_view text) {
@@ -77,13 +78,9 @@ std::vector<std::string> scenes_of(const std::string& text) {
   return names;
 }
 
+/// The strategies; sphere first where it gives the others their number of views.
 std::vector<NamedPlanner> strategies_of(const CompareOptions& options, const Planners& planners) {
-  std::vector<NamedPlanner> strategies;
-  for (const std::string& name : parts_of("--strategies", options.strategy_list)) {
-    const auto strategy = planners.find(name);
-    if (!strategy) usage_error("--strategies", strategy.error().message);
-    strategies.push_back(*strategy);
-  }
+  std::vector<NamedPlanner> strategies = parse_strategies(options.strategy_list, planners);
   if (!options.equal_views) return strategies;
   const auto sphere = std::find_if(strategies.begin(), strategies.end(),
                                    [](const NamedPlanner& strategy) { return strategy.name == kEqualViewsOf; });
@@ -101,7 +98,72 @@ std::vector<std::string> noises_of(const CompareOptions& options) {
   return noises;
 }
 
+/// Options for several machines.
+void add_machine_options(CLI::App& command, CompareOptions& options) {
+  add_value(command, "--shard", options.slice_text, "I/N",
+            "run slice I of N alone, from 0/N to N-1/N, into a file of its own below DIR/shards; auto/N takes I from "
+            "SLURM_ARRAY_TASK_ID, or from the rank of mpirun");
+  command.add_flag("--status", options.status, "say how far the slices are, and run nothing");
+  const auto take = [&options](const std::vector<std::string>& given) {
+    options.merge = true;
+    for (const std::string& folder : given) {
+      if (!folder.empty() && folder != "true") options.merged.emplace_back(folder);
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--merge", take, "add what the slices have done to the campaign, of all shards of DIR or of these folders")
+      ->expected(0, -1)
+      ->type_name("[FOLDER...]");
+  command.add_flag("--slurm", options.slurm,
+                   "submit the runs that are missing as a job array of Slurm, and a merge after it");
+  command.add_flag("--dry-run", options.job.dry_run, "show the script of --slurm, and submit nothing")
+      ->needs("--slurm");
+  add_value(command, "--partition", options.job.partition, "NAME", "partition of the job array")->needs("--slurm");
+  add_value(command, "--time", options.job.time, "LIMIT", "time limit of a task, as sbatch takes it: 2:00:00, 1-12")
+      ->needs("--slurm");
+  add_value(command, "--cpus", options.job.cpus, "N", "processors of a task, which become its --threads")
+      ->needs("--slurm")
+      ->check(CLI::Range(1, 4096));
+  add_value(command, "--tasks", options.job.tasks, "N", "slices (default: one per run, at most 100)")
+      ->needs("--slurm")
+      ->check(CLI::Range(std::size_t{1}, static_cast<std::size_t>(kMostInRange)));
+}
+
+/// A word that is put into a script as it is.
+void require_word(const std::string& option, const std::string& text) {
+  constexpr std::string_view kPlain{"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._:,-"};
+  if (text.find_first_not_of(kPlain) != std::string::npos) {
+    usage_error(option, "takes letters, digits and . _ : , - only, not '" + text + "'");
+  }
+}
+
+void check_machine_options(CompareOptions& options) {
+  if (!options.slice_text.empty()) options.slice = parse_slice(options.slice_text);
+  const std::array chosen{std::pair{options.list, "--list"}, std::pair{options.slice.has_value(), "--shard"},
+                          std::pair{options.status, "--status"}, std::pair{options.merge, "--merge"},
+                          std::pair{options.slurm, "--slurm"}};
+  const char* first = nullptr;
+  for (const auto& [given, name] : chosen) {
+    if (!given) continue;
+    if (first != nullptr) usage_error(name, std::string{"cannot be given with "} + first);
+    first = name;
+  }
+  require_word("--partition", options.job.partition);
+  require_word("--time", options.job.time);
+}
+
 }  // namespace
+
+std::vector<NamedPlanner> parse_strategies(const std::string& text, const Planners& planners) {
+  std::vector<NamedPlanner> strategies;
+  for (const std::string& name : parts_of("--strategies", text)) {
+    const auto strategy = planners.find(name);
+    if (!strategy) usage_error("--strategies", strategy.error().message);
+    strategies.push_back(*strategy);
+  }
+  return strategies;
+}
 
 std::vector<std::uint64_t> parse_seeds(const std::string& text) {
   std::set<std::uint64_t> seeds;
@@ -117,6 +179,35 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
     for (std::uint64_t seed = range->first; seed <= range->second; ++seed) seeds.insert(seed);
   }
   return {seeds.begin(), seeds.end()};
+}
+
+Slice parse_slice(const std::string& text) {
+  // Ranks and task numbers, all from 0. A task of an array may be started by an MPI of its own, so its number comes
+  // first.
+  constexpr std::array kNumbers{"SLURM_ARRAY_TASK_ID", "OMPI_COMM_WORLD_RANK", "PMI_RANK", "JOB_COMPLETION_INDEX"};
+  const std::size_t slash = text.find('/');
+  std::string index = text.substr(0, slash);
+  if (index == "auto") {
+    for (const char* name : kNumbers) {
+      const char* value = std::getenv(name);
+      if (value == nullptr) continue;
+      index = value;
+      break;
+    }
+    if (index == "auto") {
+      usage_error("--shard", "found no number of a task in the environment: none of " +
+                                 joined(kNumbers, ", ", [](const char* name) { return std::string{name}; }) +
+                                 " is set; name the slice, such as 0/10");
+    }
+  }
+  const auto number = seed_of(index);
+  const auto count = slash == std::string::npos ? std::nullopt : seed_of(std::string_view{text}.substr(slash + 1));
+  if (!number || !count || *number >= *count || *count > kMostInRange) {
+    usage_error("--shard",
+                "needs a slice and the number of slices, the first of ten being 0/10 and the last 9/10, not '" +
+                    (index == text.substr(0, slash) ? text : index + text.substr(slash)) + "'");
+  }
+  return {static_cast<std::size_t>(*number), static_cast<std::size_t>(*count)};
 }
 
 std::string noise_key(const SimulatedRunConfig& run) {
@@ -153,6 +244,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
   command.add_flag("--equal-views", options.equal_views,
                    "give every other strategy as many views as sphere took, instead of --max-views");
   command.add_flag("--list", options.list, "list the runs, and run nothing");
+  add_machine_options(command, options);
 }
 
 void check_compare_options(CompareOptions& options, const Planners& planners) {
@@ -162,6 +254,7 @@ void check_compare_options(CompareOptions& options, const Planners& planners) {
   require_ok(options.mesh.validate(), "--mesh-scale");
   check_run_options(options.run);
   options.noises = noises_of(options);  // after the camera, whose noise is the default
+  check_machine_options(options);
   check_foresight(options.run, options.robot);
   check_arm_options(options.arm_reading);
   if (options.robot == "free") require_no_reading(options.arm_reading);

@@ -6,6 +6,7 @@
 
 #include "robot_options.hpp"
 #include "saccade/arm/arm_model.hpp"
+#include "saccade/core/fnv1a.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/scene/ray_scene.hpp"
 #include "saccade/scene/scene_yaml.hpp"
@@ -17,6 +18,13 @@ using nlohmann::json;
 
 // To be raised whenever the same settings come to give other figures, so that old runs are not mixed with new ones.
 constexpr int kFiguresRevision{3};
+
+/// Hash of a set of views that all strategies choose from.
+std::string hash_of(const std::vector<Pose>& views) {
+  Fnv1a hash;
+  for (const Pose& view : views) hash.add_all(view.matrix());
+  return hash.text();
+}
 
 /// Everything that changes a run's figures, but for scene, strategy and seed; keys sorted, no blanks.
 std::string settings_of(const SimulatedRunConfig& config, const std::string& arm_hash) {
@@ -46,6 +54,10 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
                 {"robot", config.arm ? config.arm->name() : "free"}};
   if (map.clearing_percent != 100) settings["clearing_percent"] = map.clearing_percent;
   if (config.as_printed) settings["as_printed"] = true;
+  if (config.fixed_views) {
+    settings["fixed_views"] = config.fixed_views->size();
+    settings["fixed_views_hash"] = hash_of(*config.fixed_views);
+  }
   if (config.exploration.frame_on_way_s > 0.0) settings["frame_on_way_s"] = config.exploration.frame_on_way_s;
   if (config.exploration.lookahead > 1) settings["lookahead"] = config.exploration.lookahead;
   if (config.exploration.objective != Objective::surface)
@@ -108,13 +120,27 @@ Result<Comparison> Comparison::create(const CompareOptions& options) {
     SACCADE_TRY(std::vector<Scene> scenes, scenes_named(name, options.mesh));
     for (Scene& scene : scenes) SACCADE_CHECK(comparison.add_scene(std::move(scene), name));
   }
-  if (options.robot != "free") {
-    SACCADE_TRY(UrdfArm read, find_robot(options.robot, options.arm_reading.urdf));
-    comparison.arm_hash_ = arm_hash(read.arm);
-    comparison.arm_choices_ = std::move(read.choices);
-    comparison.arm_ = std::make_shared<const ArmModel>(std::move(read.arm));
-  }
+  SACCADE_CHECK(comparison.read_arm());
   return comparison;
+}
+
+Result<Comparison> Comparison::create(const CompareOptions& options, std::vector<Scene> scenes) {
+  Comparison comparison{options};
+  for (Scene& scene : scenes) {
+    const std::string name = scene.name;
+    SACCADE_CHECK(comparison.add_scene(std::move(scene), name));
+  }
+  SACCADE_CHECK(comparison.read_arm());
+  return comparison;
+}
+
+Status Comparison::read_arm() {
+  if (options_.robot == "free") return {};
+  SACCADE_TRY(UrdfArm read, find_robot(options_.robot, options_.arm_reading.urdf));
+  arm_hash_ = arm_hash(read.arm);
+  arm_choices_ = std::move(read.choices);
+  arm_ = std::make_shared<const ArmModel>(std::move(read.arm));
+  return {};
 }
 
 SimulatedRunConfig Comparison::config_of(const PlannedRun& run) const {
@@ -130,38 +156,46 @@ SimulatedRunConfig Comparison::config_of(const PlannedRun& run) const {
 }
 
 CampaignKey Comparison::key_of(const PlannedRun& run) const {
-  const ComparedScene& scene = scenes_[run.scene];
-  return {scene.name, scene.hash, run.strategy.name, run.noise, run.seed, settings_of(config_of(run), arm_hash_)};
+  SettingsTexts texts;
+  return key_of(run, texts);
 }
 
-Result<PlannedRun> Comparison::plan_again(const Campaign& campaign, const PlannedRun& run) const {
+CampaignKey Comparison::key_of(const PlannedRun& run, SettingsTexts& texts) const {
+  const ComparedScene& scene = scenes_[run.scene];
+  std::string& settings = texts[{run.strategy.name, run.noise, run.max_views.value_or(-1)}];
+  if (settings.empty()) settings = settings_of(config_of(run), arm_hash_);
+  return {scene.name, scene.hash, run.strategy.name, run.noise, run.seed, settings};
+}
+
+PlannedRun Comparison::plan_again(const CampaignIndex& found, const PlannedRun& run) const {
+  SettingsTexts texts;
+  return plan_again(found, run, texts);
+}
+
+PlannedRun Comparison::plan_again(const CampaignIndex& found, const PlannedRun& run, SettingsTexts& texts) const {
   PlannedRun now = run;
   if (options_.equal_views && run.strategy.name != kEqualViewsOf) {
     PlannedRun sphere = run;
     sphere.strategy = *std::find_if(options_.strategies.begin(), options_.strategies.end(),
                                     [](const NamedPlanner& strategy) { return strategy.name == kEqualViewsOf; });
     sphere.max_views = options_.run.run.exploration.max_views;
-    SACCADE_TRY(const std::optional<CampaignEntry> taken, campaign.find(key_of(sphere)));
-    now.max_views = taken ? std::optional{static_cast<int>(taken->run.views.size())} : std::nullopt;
+    const std::optional<std::size_t> taken = found.find(key_of(sphere, texts));
+    now.max_views = taken ? std::optional{static_cast<int>(*taken)} : std::nullopt;
   }
-  if (now.max_views) {
-    SACCADE_TRY(now.found, campaign.has(key_of(now)));
-  }
+  if (now.max_views) now.found = found.find(key_of(now, texts)).has_value();
   return now;
 }
 
-Result<std::vector<PlannedRun>> Comparison::plan(const Campaign* campaign) const {
+std::vector<PlannedRun> Comparison::plan(const CampaignIndex& found) const {
   std::vector<PlannedRun> runs;
+  SettingsTexts texts;
   for (std::size_t scene = 0; scene < scenes_.size(); ++scene) {
     for (const std::string& noise : options_.noises) {
       for (const std::uint64_t seed : options_.seeds) {
         for (const NamedPlanner& strategy : options_.strategies) {
           PlannedRun run{scene, strategy, noise, seed, options_.run.run.exploration.max_views, false};
           if (options_.equal_views && strategy.name != kEqualViewsOf) run.max_views.reset();
-          if (campaign != nullptr) {
-            SACCADE_TRY(run, plan_again(*campaign, run));
-          }
-          runs.push_back(std::move(run));
+          runs.push_back(plan_again(found, run, texts));
         }
       }
     }
@@ -169,13 +203,19 @@ Result<std::vector<PlannedRun>> Comparison::plan(const Campaign* campaign) const
   return runs;
 }
 
-Result<std::vector<CampaignEntry>> Comparison::finished(const Campaign& campaign) const {
-  SACCADE_TRY(const std::vector<PlannedRun> runs, plan(&campaign));
-  std::vector<CampaignEntry> finished;
-  for (const PlannedRun& run : runs) {
-    if (!run.found) continue;
-    SACCADE_TRY(std::optional<CampaignEntry> stored, campaign.find(key_of(run)));
-    if (stored) finished.push_back(std::move(*stored));
+Result<std::vector<CampaignEntry>> Comparison::finished(const Campaign& campaign, const CampaignIndex& found) const {
+  CampaignIndex places;  // in the plan
+  SettingsTexts texts;
+  std::size_t place = 0;
+  for (const PlannedRun& run : plan(found)) {
+    if (run.found) places.add(key_of(run, texts), place++);
+  }
+  SACCADE_TRY(std::vector<CampaignEntry> stored,
+              campaign.figures([&places](const CampaignKey& key) { return places.find(key).has_value(); }));
+  std::vector<CampaignEntry> finished(place);
+  for (CampaignEntry& run : stored) {
+    CampaignEntry& entry = finished[*places.find(run.key)];
+    entry = std::move(run);
   }
   return finished;
 }

@@ -2,14 +2,16 @@
 #pragma once
 // Comparison: the runs of `saccade compare`, those that a campaign file has already and those still to be done.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "compare_options.hpp"
 #include "saccade/scene/ray_scene.hpp"
-#include "saccade/trial/campaign.hpp"
+#include "saccade/trial/campaign_index.hpp"
 
 namespace saccade::cli {
 
@@ -35,6 +37,8 @@ class Comparison {
   /// Reads and builds the scenes and the arm. Errors: those of find_scene, mesh_scene, find_robot and RayScene::build;
   /// invalid_argument for two different scenes with one name, and for one in which there is nothing but supports.
   [[nodiscard]] static Result<Comparison> create(const CompareOptions& options);
+  /// As create(), with these scenes instead of those that the options name.
+  [[nodiscard]] static Result<Comparison> create(const CompareOptions& options, std::vector<Scene> scenes);
 
   [[nodiscard]] const CompareOptions& options() const { return options_; }
   [[nodiscard]] const std::vector<ComparedScene>& scenes() const { return scenes_; }
@@ -44,21 +48,28 @@ class Comparison {
   [[nodiscard]] std::string robot_name() const { return arm_ ? arm_->name() : "free"; }
   /// Choices that were made when the arm was read.
   [[nodiscard]] const std::vector<std::string>& arm_choices() const { return arm_choices_; }
-  /// All runs in their order. campaign: nullptr for one that is not there yet.
-  [[nodiscard]] Result<std::vector<PlannedRun>> plan(const Campaign* campaign) const;
+  /// All runs in their order. found: those that are done.
+  [[nodiscard]] std::vector<PlannedRun> plan(const CampaignIndex& found) const;
   /// One of them as things are now.
-  [[nodiscard]] Result<PlannedRun> plan_again(const Campaign& campaign, const PlannedRun& run) const;
+  [[nodiscard]] PlannedRun plan_again(const CampaignIndex& found, const PlannedRun& run) const;
 
   /// Expects that max_views is known.
   [[nodiscard]] SimulatedRunConfig config_of(const PlannedRun& run) const;
   [[nodiscard]] CampaignKey key_of(const PlannedRun& run) const;
+  /// Settings of runs that were asked for before, by what they depend on: strategy, noise, most views.
+  using SettingsTexts = std::map<std::tuple<std::string, std::string, int>, std::string>;
+  /// As key_of(), for many runs.
+  [[nodiscard]] CampaignKey key_of(const PlannedRun& run, SettingsTexts& texts) const;
 
   /// The runs of this comparison that the campaign has, in their order.
-  [[nodiscard]] Result<std::vector<CampaignEntry>> finished(const Campaign& campaign) const;
+  /// @param found  all runs of the campaign
+  [[nodiscard]] Result<std::vector<CampaignEntry>> finished(const Campaign& campaign, const CampaignIndex& found) const;
 
  private:
   explicit Comparison(const CompareOptions& options) : options_{options} {}
+  [[nodiscard]] Status read_arm();
   [[nodiscard]] Status add_scene(Scene scene, const std::string& given_as);
+  [[nodiscard]] PlannedRun plan_again(const CampaignIndex& found, const PlannedRun& run, SettingsTexts& texts) const;
 
   CompareOptions options_;
   std::vector<ComparedScene> scenes_;

@@ -10,6 +10,7 @@
 #include "explore_report.hpp"
 #include "explore_run.hpp"
 #include "explore_show.hpp"
+#include "explore_surfels.hpp"
 #include "saccade/core/angle.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
@@ -134,7 +135,7 @@ std::string summary_of(const ExploreOptions& options, const ExploreRun& explored
 }
 
 json result_json(const ExploreOptions& options, const ExploreSetup& subject, const ExploreDevices& devices,
-                 const ExploreRun& explored, const Measures& final) {
+                 const ExploreRun& explored, const Measures& final, std::size_t unknown_surfels) {
   const RunRecord& run = explored.record();
   const bool ended = run.stopped_because == StopReason::regions_done && !run.regions.empty();
   return {{"scene", subject.scene.name},
@@ -154,6 +155,7 @@ json result_json(const ExploreOptions& options, const ExploreSetup& subject, con
           {"initial", explored.scanned() ? scan_to_json(run.scan) : json(nullptr)},
           {"views", views_to_json(run.views)},
           {"phases_s", phases_to_json(run.views)},
+          {"map", map_to_json(options, explored.map(), unknown_surfels)},
           {"final", measures_to_json(final)},
           {"refused_at_end", refusals_to_json(run.refused_at_end)},
           {"gain_left", ended ? json(run.regions.back().gain_left) : json(nullptr)},
@@ -167,9 +169,12 @@ Error kept(Error error, const RunFolder& out) {
   return error;
 }
 
-Status write_map(const RunFolder& out, const ExploreRun& run, const Box& workspace, const Executor& executor) {
+/// The map, which with surfels says what is free, and the surface: a mesh, or surfels.
+Status write_map(const RunFolder& out, const ExploreOptions& options, const ExploreRun& run, const Box& workspace,
+                 std::span<const SurfelDisc> unknown, const Executor& executor) {
   SACCADE_CHECK(save_map(run.map(), out / "map.sacmap", executor));
-  SACCADE_CHECK(write_mesh(out / "mesh.ply", extract_mesh(run.map(), executor)));
+  SACCADE_CHECK(write_surfels(out, options, unknown));
+  if (!options.surfels) SACCADE_CHECK(write_mesh(out / "mesh.ply", extract_mesh(run.map(), executor)));
   TernaryVolumeConfig states;
   states.box = workspace;
   const auto written = write_ternary_volume(run.map(), out / "ternary.npy", states);
@@ -202,13 +207,14 @@ class Explore final : public Command {
                     .required = true,
                     .opened_by_command = true});
     folder_ = &options.request();
+    command_ = &options.group();
     add_explore_options(options.group(), explore_, *planners_);
   }
 
   void check(const GlobalOptions& global) override {
     explore_.out = folder_->path;
     explore_.force = folder_->force;
-    check_explore_options(explore_, global);
+    check_explore_options(*command_, explore_, global);
   }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
@@ -245,9 +251,9 @@ class Explore final : public Command {
 
  private:
   /// Writes the map, run.json and the page. The journal is there until all of them are.
-  [[nodiscard]] Status write_results(Context& context, const json& result) const {
+  [[nodiscard]] Status write_results(Context& context, const json& result, std::span<const SurfelDisc> unknown) const {
     const RunFolder& out = *context.folder();
-    SACCADE_CHECK(write_map(out, *run_, subject_->scene.workspace, context.executor()));
+    SACCADE_CHECK(write_map(out, explore_, *run_, subject_->scene.workspace, unknown, context.executor()));
     SACCADE_TRY(const json document, context.write_document(result));
     return explore_.write_pictures ? server::write_report(out / "report.html", document) : Status{};
   }
@@ -257,9 +263,11 @@ class Explore final : public Command {
     const RunFolder& out = *context.folder();
     const RunRecord& run = run_->record();
     const Measures final = run_->measure_now();
-    Outcome outcome{.result = result_json(explore_, *subject_, *devices_, *run_, final),
+    SACCADE_TRY(const std::vector<SurfelDisc> unknown, unknown_surfels_of(explore_, run_->map(), context.executor()));
+    Outcome outcome{.result = result_json(explore_, *subject_, *devices_, *run_, final, unknown.size()),
                     .text = summary_of(explore_, *run_, final)};
-    if (const Status written = write_results(context, outcome.result); !written) return kept(written.error(), out);
+    if (const Status written = write_results(context, outcome.result, unknown); !written)
+      return kept(written.error(), out);
     if (run.stopped_because == StopReason::cancelled) {
       outcome.cut_short = "stopped after " + std::to_string(run.views.size()) + " views; what they gave is in " +
                           context.out().string() + (has_journal(out.path()) ? "; to go on, add --resume" : "");
@@ -272,6 +280,7 @@ class Explore final : public Command {
 
   const Planners* planners_;
   const FolderRequest* folder_{nullptr};
+  const CLI::App* command_{nullptr};
   ExploreOptions explore_;
   std::optional<ExploreSetup> subject_;
   std::optional<ExploreDevices> devices_;

@@ -6,6 +6,7 @@
 
 #include "add_value.hpp"
 #include "cell_options.hpp"
+#include "explore_surfels.hpp"
 #include "length_options.hpp"
 #include "robot_options.hpp"
 
@@ -78,9 +79,11 @@ void add_device_options(CLI::App& command, ExploreOptions& options) {
       "a program that has a depth camera (docs/guides/processes.md); then there is no ground truth to compare with");
   add_value(command, "--process-timeout", options.process_timeout_s, "SECONDS",
             "seconds after which a program that does not answer is given up");
-  add_choice(command, "--tracking", options.tracking, kTrackingModeNames,
-             "source of the poses of frames: forced, the robot; hint, ICP that begins at the robot's pose, or that "
-             "pose where ICP fails; icp, ICP alone, and frames where it fails are left out (default: forced)");
+  add_choice(
+      command, "--tracking", options.tracking, kTrackingModeNames,
+      "source of the poses of frames: forced, the robot; hint, ICP that begins at the robot's pose, or that "
+      "pose where ICP fails; icp, ICP alone, and frames where it fails are left out; rgbd, the same with colours "
+      "(default: forced)");
   command.add_flag("--truth", options.with_truth,
                    "the camera's program simulates the scene's objects, as in a simulated cell; coverage is measured");
   add_value(command, "--map", options.map, "FILE", "start from a saved map (.sacmap) instead of an unknown one");
@@ -113,11 +116,14 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
   add_mesh_options(command, options.mesh);
   add_value(command, "--strategy", options.strategy, "NAME", strategy_help(planners));
   add_saliency_options(command, options.saliency);
+  add_choice(command, "--backend", options.backend, kViewBackendNames,
+             "where the surface that is expected is computed, for the strategy surface; views are the same");
   add_run_options(command, options, min_gain_by_strategy());
   add_foresight_options(command, options);
 
   add_arm_options(command, options);
   add_device_options(command, options);
+  add_surfel_options(command, options);
   add_dry_run_option(command, options);
   command.add_flag("--step", options.step, "ask before each move");
   command.add_flag("--resume", options.resume, "go on with the interrupted run in RUN");
@@ -128,7 +134,8 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
   add_message_options(command, options.messages);
 }
 
-void check_explore_options(ExploreOptions& options, const GlobalOptions& global) {
+void check_explore_options(const CLI::App& command, ExploreOptions& options, const GlobalOptions& global) {
+  check_surfel_options(command, options);
   if (options.resume && options.force) usage_error("--resume", "goes on with a run, --force starts it anew: not both");
   if (!options.show && !options.serve.given.empty()) usage_error(options.serve.given, "is for --show");
   require_ok(options.mesh.validate(), "--mesh-scale");
@@ -136,7 +143,8 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   check_run_options(options);
   // No surface is expected of an empty bench: what is unknown is looked at instead.
   const bool rehearses = options.dry_run && options.map.empty() && options.strategy == surface_planner().name;
-  const auto strategy = global.planners.find(rehearses ? "sphere" : options.strategy);
+  const Result<NamedPlanner> strategy =
+      options.surfels ? surfel_planner(options.surfels) : global.planners.find(rehearses ? "sphere" : options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
   choose_strategy(options, *strategy);
   if (strategy->needs_truth && !options.camera_command.empty()) {

@@ -14,6 +14,7 @@
 #include "saccade/devices/cell.hpp"
 #include "segment_saliency.hpp"
 #include "serve.hpp"
+#include "view_backend.hpp"
 
 namespace saccade::cli {
 
@@ -30,6 +31,7 @@ struct ExploreOptions : RunOptions {
   std::optional<double> speed{};           ///< share of the arm's speeds; nullopt: all of them
   std::optional<TrackingMode> tracking{};  ///< nullopt: forced
   std::filesystem::path map;               ///< saved map to go on from; empty: nothing is known
+  std::shared_ptr<SurfelModel> surfels{};  ///< --map surfels; nullptr: the map is a volume
   Cell cell;                               ///< that the scene's file describes
   std::optional<Error> cell_problem{};     ///< what is wrong with that file
   std::string robot_command;               ///< a program that moves a robot; empty: robot
@@ -42,6 +44,7 @@ struct ExploreOptions : RunOptions {
   bool force{false};
   std::string strategy{"surface"};  ///< as it was given
   SaliencyOptions saliency;
+  ViewBackend backend{ViewBackend::cpu};  ///< computes the expected surface
 
   MessageOptions messages;
 
@@ -79,6 +82,6 @@ void limit_dry_run(ExploreOptions& options);
 /// Adds the options to the command.
 void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners);
 /// After parsing: fills `run`, and throws a usage error for what makes no sense.
-void check_explore_options(ExploreOptions& options, const GlobalOptions& global);
+void check_explore_options(const CLI::App& command, ExploreOptions& options, const GlobalOptions& global);
 
 }  // namespace saccade::cli

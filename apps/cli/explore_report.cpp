@@ -72,10 +72,11 @@ Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor&
   CandidatesPictureConfig config;
   config.sensor = scenes.camera;
   config.gain_unit = scenes.gain_unit;
-  SACCADE_CHECK(write_png(out / picture_name(scenes.number, "choice"),
-                          candidates_picture({scenes.before, scenes.view.choice->region, candidates,
-                                              scenes.view.T_world_camera, scenes.T_world_earlier, scenes.robot},
-                                             executor, config)));
+  SACCADE_CHECK(
+      write_png(out / picture_name(scenes.number, "choice"),
+                candidates_picture({scenes.before, scenes.view.choice->region, candidates, scenes.view.T_world_camera,
+                                    scenes.T_world_earlier, scenes.robot, scenes.surfels_before},
+                                   executor, config)));
   if (!scenes.frames.empty()) {
     const Frame& middle = scenes.frames[scenes.frames.size() / 2];
     const DepthScale scale{scenes.camera.min_range_m, scenes.camera.max_range_m};
@@ -83,14 +84,16 @@ Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor&
   }
   MapPictureConfig map;
   map.robot = scenes.robot;
+  map.surfels = scenes.surfels_after;
   return write_png(out / picture_name(scenes.number, "map"),
                    map_picture(scenes.after, scenes.workspace, executor, map));
 }
 
 Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace, const Executor& executor,
-                 const RobotDrawing* robot) {
+                 const RobotDrawing* robot, const DrawnSurfels* surfels) {
   MapPictureConfig config;
   config.robot = robot;
+  config.surfels = surfels;
   return write_png(out / picture_name(0, "map"), map_picture(map, workspace, executor, config));
 }
 

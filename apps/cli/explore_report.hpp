@@ -6,6 +6,7 @@
 
 #include "explore_devices.hpp"
 #include "run_folder.hpp"
+#include "saccade/report/drawn_surfels.hpp"
 #include "saccade/report/robot_drawing.hpp"
 
 namespace saccade::cli {
@@ -22,6 +23,8 @@ struct ViewScenes {
   PinholeCamera camera;
   const RobotDrawing* robot{nullptr};  ///< drawn at the view; none: the camera flies
   std::string gain_unit{"rays"};
+  const DrawnSurfels* surfels_before{nullptr};  ///< drawn instead of the maps
+  const DrawnSurfels* surfels_after{nullptr};
 };
 
 /// Writes view-NN-choice.png, view-NN-seen.png and view-NN-map.png, and view-NN-saliency.png of a strategy that looks
@@ -29,7 +32,8 @@ struct ViewScenes {
 [[nodiscard]] Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor& executor);
 /// Writes view-00-map.png.
 [[nodiscard]] Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace,
-                               const Executor& executor, const RobotDrawing* robot = nullptr);
+                               const Executor& executor, const RobotDrawing* robot = nullptr,
+                               const DrawnSurfels* surfels = nullptr);
 /// Whether the file belongs to a view of a run: a picture, its candidates, the map after it.
 [[nodiscard]] bool is_view_file(const std::string& file_name);
 

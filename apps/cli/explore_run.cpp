@@ -5,12 +5,15 @@
 #include <cmath>
 
 #include "explore_report.hpp"
+#include "explore_surfels.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/core/angle.hpp"
 #include "saccade/io/frames/camera_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/report/exploration_pictures.hpp"
 #include "saccade/scene/ray_scene.hpp"
 #include "server/show/arm_reading.hpp"
 #include "summary.hpp"
@@ -58,7 +61,7 @@ json settings_of(const ExploreOptions& options, const ExploreSetup& subject, con
   if (run.exploration.frame_on_way_s > 0.0) settings["frame_on_way_s"] = run.exploration.frame_on_way_s;
   if (run.exploration.lookahead > 1) settings["lookahead"] = run.exploration.lookahead;
   if (run.exploration.objective != Objective::surface) settings["objective"] = to_string(run.exploration.objective);
-  if (run.strategy.name == surface_planner().name) settings["least_share"] = run.least_share;
+  if (run.strategy.name == surface_planner().name || options.surfels) settings["least_share"] = run.least_share;
   if (run.weigh_by_saliency) settings["saliency"] = saliency_text(options.saliency);
   if (run.strategy.name == attention_planner().name) {
     settings["saliency"] = saliency_text(options.saliency);
@@ -99,7 +102,7 @@ ExploreRun::ExploreRun(const ExploreOptions& options, const ExploreSetup& subjec
       map_{std::move(map)},
       before_{map_.snapshot()} {
   journal_.settings = settings_of(options, subject, devices.intrinsics());
-  if (subject.truth) truth_meter_.emplace(*subject.truth, executor);
+  if (subject.truth) truth_meter_.emplace(*subject.truth, options.run, options.surfels.get(), executor);
 }
 
 Result<std::unique_ptr<ExploreRun>> ExploreRun::create(const ExploreOptions& options, const ExploreSetup& subject,
@@ -153,8 +156,11 @@ Status ExploreRun::run_to_end() {
   const CancelOnInterrupt guard{cancel};
   const Approve approve = [this](const RankedView& view) { return ask(view); };
   Recorders recorders{messages_.get(), this};  // the first sees what a view was chosen from
-  Explorer explorer{{map_, devices_.camera(), devices_.robot(), executor_, &recorders, nullptr, approve, &cancel},
-                    options_.run.exploration};
+  SACCADE_TRY(const std::unique_ptr<SurfaceDevice> device, surface_device_on(options_.backend, map_.config()));
+  ExplorerParts parts{map_, devices_.camera(), devices_.robot(), executor_, &recorders, nullptr, approve, &cancel};
+  parts.device = device.get();
+  parts.model = options_.surfels.get();
+  Explorer explorer{std::move(parts), options_.run.exploration};
   if (!journal_.scanned) {
     progress_.update("initial scan", 0, 0);
     if (journal_.run.scan.attempted == 0) {
@@ -191,7 +197,7 @@ Approval ExploreRun::ask(const RankedView& view) {
 }
 
 Measures ExploreRun::measure_now() const {
-  if (subject_.truth) return measure_map(*subject_.truth, map(), executor_);
+  if (subject_.truth) return measure_run(*subject_.truth, map(), options_.surfels.get(), options_.run, executor_);
   Measures measures;
   measures.unknown_left = count_unknown(map(), subject_.scene.workspace);
   return measures;
@@ -210,7 +216,10 @@ Status ExploreRun::scanned(ScanRecord& scan, const TsdfSnapshot& map) {
   before_ = map_.snapshot();
   if (options_.write_pictures) {
     const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), devices_.robot().configuration(), {});
-    SACCADE_CHECK(draw_scan(out_, map, subject_.scene.workspace, executor_, robot ? &*robot : nullptr));
+    SACCADE_TRY(std::optional<DrawnSurfels> surfels, draw_surfels_now());
+    SACCADE_CHECK(draw_scan(out_, map, subject_.scene.workspace, executor_, robot ? &*robot : nullptr,
+                            surfels ? &*surfels : nullptr));
+    surfels_before_ = std::move(surfels);
   }
   return save_journal();
 }
@@ -238,20 +247,38 @@ Status ExploreRun::save_journal() {
   journal_.q = devices_.robot().configuration();
   const std::string kept =
       options_.keeps_views() && journal_.scanned ? view_file(journal_.run.views.size(), ".sacmap") : "";
+  if (options_.surfels) {  // they are not kept on the way, so that there is nothing to go on with
+    if (!kept.empty()) SACCADE_CHECK(save_map(map(), out_ / kept, executor_));
+    if (recorded_) recorded_();
+    return {};
+  }
   SACCADE_CHECK(journal_.save(out_.path(), map(), executor_, kept));
   if (recorded_) recorded_();
   return {};
 }
 
-Status ExploreRun::draw(const ViewRecord& view, std::span<const Frame> frames) const {
+Result<std::optional<DrawnSurfels>> ExploreRun::draw_surfels_now() const {
+  if (!options_.surfels) return std::optional<DrawnSurfels>{};
+  SACCADE_TRY(const std::vector<SurfelDisc> unknown, unknown_surfels_of(options_, map(), executor_));
+  Box shown = subject_.scene.workspace;
+  shown.min.array() -= MapPictureConfig{}.margin_m;
+  shown.max.array() += MapPictureConfig{}.margin_m;
+  return std::optional{drawn_surfels(options_.surfels->surfels(), UnknownSurfelConfig{}.min_weight, unknown, shown)};
+}
+
+Status ExploreRun::draw(const ViewRecord& view, std::span<const Frame> frames) {
   std::vector<Pose> earlier;
   for (const ViewRecord& taken : journal_.run.views) earlier.push_back(taken.T_world_camera);
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.q, view.path);
-  return draw_view(
+  SACCADE_TRY(std::optional<DrawnSurfels> surfels, draw_surfels_now());
+  SACCADE_CHECK(draw_view(
       out_,
       {journal_.run.views.size() + 1, before_, map(), view, std::move(earlier), frames, subject_.scene.workspace,
-       devices_.intrinsics(), robot ? &*robot : nullptr, options_.run.strategy.gain_unit},
-      executor_);
+       devices_.intrinsics(), robot ? &*robot : nullptr, options_.run.strategy.gain_unit,
+       surfels_before_ ? &*surfels_before_ : nullptr, surfels ? &*surfels : nullptr},
+      executor_));
+  surfels_before_ = std::move(surfels);
+  return {};
 }
 
 }  // namespace saccade::cli

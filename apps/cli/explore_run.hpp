@@ -8,6 +8,7 @@
 #include "explore_journal.hpp"
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
+#include "saccade/report/drawn_surfels.hpp"
 
 namespace saccade::cli {
 
@@ -41,7 +42,9 @@ class ExploreRun final : private Recorder {
   [[nodiscard]] Status scanned(ScanRecord& scan, const TsdfSnapshot& map) override;
   [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) override;
   [[nodiscard]] Status save_journal();
-  [[nodiscard]] Status draw(const ViewRecord& view, std::span<const Frame> frames) const;
+  [[nodiscard]] Status draw(const ViewRecord& view, std::span<const Frame> frames);
+  /// The surfels as they are; nullopt where the map is a volume.
+  [[nodiscard]] Result<std::optional<DrawnSurfels>> draw_surfels_now() const;
 
   const ExploreOptions& options_;
   const ExploreSetup& subject_;
@@ -51,6 +54,7 @@ class ExploreRun final : private Recorder {
   ProgressBar& progress_;
   TsdfMap map_;
   TsdfSnapshot before_;  // the map as it was before the view that is being taken
+  std::optional<DrawnSurfels> surfels_before_;
   ExploreJournal journal_;
   std::optional<TruthMeter> truth_meter_;  // where the scene has a truth
   std::function<void()> recorded_;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade filter: removes the shadow and veil points of a Kinect v2 from depth images, and shows which.
 #include <algorithm>
+#include <array>
 
 #include "context.hpp"
 #include "filter.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/depth_io.hpp"
 #include "saccade/report/depth_picture.hpp"
 #include "saccade/sensor/mask.hpp"
 #include "server/report_file.hpp"
@@ -24,17 +25,25 @@ struct InputFrame {
   bool from_folder{false};
 };
 
-/// The PNG files of a folder, by name.
+constexpr std::array<std::string_view, 6> kDepthSuffixes{".png", ".pgm", ".tif", ".tiff", ".npy", ".exr"};
+
+/// Filtered frames are PNG files, whatever they were before.
+fs::path result_name(const fs::path& file) { return file.filename().replace_extension(".png"); }
+
+/// The depth images of a folder, by name.
 Result<std::vector<InputFrame>> frames_in(const fs::path& folder) {
   std::error_code code;
   std::error_code ignored;
   std::vector<InputFrame> frames;
   for (const fs::directory_entry& entry : fs::directory_iterator{folder, code}) {
-    if (entry.path().extension() == ".png" && !fs::is_directory(entry.path(), ignored))
-      frames.push_back({entry.path(), true});
+    const std::string suffix = entry.path().extension().string();
+    const bool is_depth = std::find(kDepthSuffixes.begin(), kDepthSuffixes.end(), suffix) != kDepthSuffixes.end();
+    if (is_depth && !fs::is_directory(entry.path(), ignored)) frames.push_back({entry.path(), true});
   }
   if (code) return Error{Errc::io_failure, "cannot be listed: " + code.message(), folder.string()};
-  if (frames.empty()) return Error{Errc::not_found, "there are no PNG files in this folder", folder.string()};
+  if (frames.empty())
+    return Error{Errc::not_found, "there are no depth images in this folder: no PNG, PGM, TIFF, NPY or EXR",
+                 folder.string()};
   std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.file < b.file; });
   return frames;
 }
@@ -59,14 +68,11 @@ Status check_names(const std::vector<InputFrame>& frames, const fs::path& out) {
   std::error_code ignored;
   for (const InputFrame& frame : frames) {
     const fs::path folder = frame.file.has_parent_path() ? frame.file.parent_path() : fs::path{"."};
-    const fs::path name = frame.file.filename();
+    const fs::path name = result_name(frame.file);
     for (const fs::path& results : {out, out / kPictureFolder}) {
       if (!fs::equivalent(folder, results, ignored) && !fs::equivalent(frame.file, results / name, ignored)) continue;
       return Error{Errc::invalid_argument, "the results would replace the frames; name another folder with --out",
                    out.string()};
-    }
-    if (name == kFilterFile || name == kPictureFolder) {
-      return Error{Errc::invalid_argument, "results have this name; give the frame another one", frame.file.string()};
     }
     names.push_back(name);
   }
@@ -93,8 +99,16 @@ struct DepthFrame {
   PinholeCamera camera;
 };
 
+/// Samples of 16 bits: those of a PNG as they are; the depths of other formats by the encoding.
+Result<Image16> read_samples(const fs::path& file, const FilterOptions& options) {
+  if (file.extension() == ".png") return read_png16(file);
+  const UnitsSource source = options.depth_scale ? UnitsSource::given : UnitsSource::layout;
+  SACCADE_TRY(const DepthImage depth, read_depth_image(file, {options.encoding, source}));
+  return encode_depth(depth, options.encoding);
+}
+
 Result<DepthFrame> read_frame(const fs::path& file, const FilterOptions& options) {
-  SACCADE_TRY(Image16 samples, read_png16(file));
+  SACCADE_TRY(Image16 samples, read_samples(file, options));
   DepthFrame frame{std::move(samples), {}, {}};
   frame.camera = camera_of(options, frame.samples);
   if (frame.samples.width() != frame.camera.width || frame.samples.height() != frame.camera.height) {
@@ -155,7 +169,7 @@ Result<FilteredFrame> filter_frame(const fs::path& file, const FilterOptions& op
   SACCADE_TRY(FilteredDepth filtered, filter->filter(frame.depth, executor));
   const double ms = watch.elapsed_ms();
   const std::size_t out_of_range = remove_out_of_range(frame, filtered);
-  const fs::path name = file.filename();
+  const fs::path name = result_name(file);
   SACCADE_CHECK(write_png16(out.path() / name, kept_samples(frame, filtered)));
   if (with_picture) SACCADE_CHECK(write_picture(out, name, frame, filtered));
   return FilteredFrame{file, filtered.points, filtered.shadow_points, filtered.veil_points, out_of_range, ms};
@@ -186,7 +200,7 @@ Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const Fil
 }
 
 /// Removes the files of an earlier run from the folder, as its filter.json lists them.
-Status remove_earlier(const RunFolder& out) {
+Status remove_earlier_frames(const RunFolder& out) {
   constexpr std::uintmax_t kMostBytes{std::uintmax_t{256} << 20U};
   std::vector<std::string> names{std::string{kFilterFile}, std::string{kReportFileName}};
   const auto text = read_text_file(out / kFilterFile, kMostBytes);
@@ -195,8 +209,8 @@ Status remove_earlier(const RunFolder& out) {
   if (earlier.is_object() && earlier.contains(details)) {
     for (const nlohmann::json& frame : earlier.at(details)) {
       if (!frame.is_object() || !frame.contains("frame") || !frame.at("frame").is_string()) continue;
-      const fs::path name = fs::path{frame.at("frame").get<std::string>()}.filename();
-      if (name.extension() == ".png") names.insert(names.end(), {name, fs::path{kPictureFolder} / name});
+      const fs::path name = result_name(frame.at("frame").get<std::string>());
+      names.insert(names.end(), {name, fs::path{kPictureFolder} / name});
     }
   }
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
@@ -234,7 +248,7 @@ Error nothing_filtered(const FilterResult& result) {
   const std::vector<std::string> reasons = reasons_of(result.left_out);
   const std::string why = reasons.empty() ? first.to_string() : joined(reasons, "; ");
   return {first.code,
-          "not one of the " + std::to_string(result.left_out.size()) + " PNG files can be filtered: " + why +
+          "not one of the " + std::to_string(result.left_out.size()) + " depth images can be filtered: " + why +
               ". filter is for the depth images of a Kinect v2 and of sensors like it",
           {}};
 }
@@ -252,7 +266,7 @@ class Filter final : public Command {
     SACCADE_CHECK(check_names(frames, context.out()));
     SACCADE_CHECK(context.open_folder());
     const RunFolder& out = *context.folder();
-    SACCADE_CHECK(remove_earlier(out));
+    SACCADE_CHECK(remove_earlier_frames(out));
     SACCADE_TRY(const FilterResult result, filter_all(frames, filter_, out, context.executor(), context.bar()));
     if (result.frames.empty()) return nothing_filtered(result);
     for (const std::string& reason : reasons_of(result.left_out)) context.bar().note("left out: " + reason);

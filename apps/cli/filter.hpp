@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,9 +22,10 @@ class Options;
 constexpr std::string_view kFilterFile{"filter.json"};
 
 struct FilterOptions {
-  std::vector<std::filesystem::path> frames;  ///< 16-bit PNG files, and folders of them
+  std::vector<std::filesystem::path> frames;  ///< depth images, and folders of them
   CameraOptions camera_options;
   PinholeCamera camera;
+  std::optional<double> depth_scale;  ///< samples per metre; none: 1000, and floats are metres
   DepthEncoding encoding;
   DepthFilterConfig filter;
   std::size_t pictures{10};  ///< number of frames, the first ones, of which there is a picture

@@ -25,15 +25,20 @@ void declare_steps(Options& options, DepthFilterConfig& filter) {
 }  // namespace
 
 void declare_filter(Options& declared, FilterOptions& options) {
-  declared.value("frames", options.frames, "FRAMES...", "depth images in 16-bit PNG, or folders of them").required();
+  declared
+      .value("frames", options.frames, "FRAMES...",
+             "depth images (16-bit PNG, PGM, TIFF, NPY or EXR), or folders of them")
+      .required();
   declared.folder(
-      {.help = "folder for the filtered frames, of the same names, filter.json, and pictures before and after",
+      {.help =
+           "folder for the filtered frames, PNG files of the same names, filter.json, and pictures before and after",
        .files = {kFilterFile},
        .document = kFilterFile,
        .required = true,
        .opened_by_command = true});
   add_camera_options(declared.group(), options.camera_options, false);
-  declared.value("--depth-scale", options.encoding.units_per_m, "UNITS", "depth samples per metre");
+  declared.value("--depth-scale", options.depth_scale, "UNITS",
+                 "depth samples per metre, also of the results (default: 1000; floats are metres)");
   declare_steps(declared, options.filter);
   declared.value("--pictures", options.pictures, "N", "draw pictures of the first N frames").whole_number();
   declared.flag("--no-pictures{false}", options.write_pictures, "draw no pictures");
@@ -42,6 +47,7 @@ void declare_filter(Options& declared, FilterOptions& options) {
 void check_filter_options(FilterOptions& options) {
   options.camera = options.camera_options.camera(camera_preset("kinect-v2").value());
   require_ok(options.camera.validate(), "the camera");
+  if (options.depth_scale) options.encoding.units_per_m = *options.depth_scale;
   require_positive(options.encoding.units_per_m, "--depth-scale");
   require_ok(options.filter.validate(), "--baseline, --veil-angle");
 }

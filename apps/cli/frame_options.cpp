@@ -12,17 +12,56 @@ namespace {
 constexpr auto kEncodingWords =
     make_names<DepthEncoding>({{{1000.0, false}, "mm"}, {{5000.0, false}, "tum"}, {{10000.0, true}, "bit-rotated"}});
 
+/// Options for colour images that are not registered to the depth images.
+void add_color_camera_options(CLI::App& command, RgbdFolderConfig& folder) {
+  CLI::Option* camera =
+      command
+          .add_option_function<std::string>(
+              "--color-camera",
+              [&folder](const std::string& text) {
+                const std::vector<double> n = parse_numbers("--color-camera", text, 4);
+                if (!(n[0] > 0.0 && n[1] > 0.0)) usage_error("--color-camera", "focal lengths must be positive");
+                folder.color_intrinsics = Intrinsics{n[0], n[1], n[2], n[3], {}, {}, {}, {}, {}};
+              },
+              "focal lengths and principal point of the colour images, pixels, where they are not registered to the "
+              "depth images: their colours are laid on the depths")
+          ->type_name("FX,FY,CX,CY");
+  command
+      .add_option_function<std::string>(
+          "--color-at",
+          [&folder](const std::string& text) {
+            const std::vector<double> n = parse_numbers("--color-at", text, 0);
+            if (n.size() != 3 && n.size() != 7) {
+              usage_error("--color-at", "takes X,Y,Z or X,Y,Z,QX,QY,QZ,QW, not " + text);
+            }
+            Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+            if (n.size() == 7) turn = Eigen::Quaterniond{n[6], n[3], n[4], n[5]};
+            constexpr double kLeastLength{1e-6};
+            if (!(turn.norm() > kLeastLength)) usage_error("--color-at", "has a quaternion of length 0");
+            folder.T_color_depth = (Eigen::Translation3d{n[0], n[1], n[2]} * turn.normalized()).inverse();
+          },
+          "place of the colour camera in the depth camera's frame (x right, y down, z forward; metres), and its turn "
+          "as "
+          "a quaternion (default: the same place)")
+      ->type_name("X,Y,Z[,QX,QY,QZ,QW]")
+      ->needs(camera);
+}
+
 void add_reading_options(CLI::App& command, FrameOptions& options) {
   add_camera_options(command, options.camera, false);
   command
       .add_option_function<std::string>(
           "--distortion",
           [&options](const std::string& text) {
-            const std::vector<double> n = parse_numbers("--distortion", text, 5);
-            options.folder.distortion = Distortion{n[0], n[1], n[2], n[3], n[4]};
+            const std::vector<double> n = parse_numbers("--distortion", text, 0);
+            options.folder.distortion = Distortion::from_coefficients(n);
+            if (n.size() < 4 || !options.folder.distortion) {
+              throw CLI::ValidationError("--distortion", "4 to 8 numbers expected: k1,k2,p1,p2,k3,k4,k5,k6");
+            }
           },
-          "lens distortion (Brown-Conrady), undone on the way in")
-      ->type_name("K1,K2,P1,P2,K3");
+          "lens distortion (Brown-Conrady, as OpenCV orders it; the last four may be left out), undone on the way in")
+      ->type_name("K1,K2,P1,P2,K3,K4,K5,K6");
+  add_color_camera_options(command, options.folder);
   add_choice(command, "--layout", options.folder.layout, kRgbdLayoutWords, "how the files are named; auto: recognised");
   add_choice(command, "--depth-encoding", options.folder.encoding, kEncodingWords,
              "meaning of depth samples (default: the layout's): 1/1000 m, 1/5000 m, 1/10000 m rotated by three bits");
@@ -65,6 +104,10 @@ void add_bag_options(CLI::App& command, BagFramesConfig& bag) {
 
 Result<std::unique_ptr<RgbdFolderSource>> open_source(const FrameOptions& options, const RgbdFolderConfig& reading) {
   if (is_bag(options.frames)) {
+    if (reading.color_intrinsics) {
+      return Error{Errc::invalid_argument, "--color-camera and --color-at are for folders; this is a bag",
+                   options.frames.string()};
+    }
     BagFramesConfig bag = options.bag;
     bag.reading = reading;
     return open_bag_frames(options.frames, bag);
@@ -87,10 +130,10 @@ Result<std::unique_ptr<RgbdFolderSource>> open_source(const FrameOptions& option
 /// The tracking mode that was asked for or that the folder allows.
 Result<TrackingMode> choose_tracking(const FrameOptions& options, const RgbdFolderInfo& info) {
   if (!options.tracking) return info.has_poses ? TrackingMode::forced : TrackingMode::icp;
-  if (*options.tracking != TrackingMode::icp && !info.has_poses) {
+  if (needs_pose(*options.tracking) && !info.has_poses) {
     return Error{Errc::not_found,
                  "there are no camera poses for --tracking " + std::string{to_string(*options.tracking)} +
-                     "; pass --poses FILE, or use --tracking icp",
+                     "; pass --poses FILE, or use --tracking icp or rgbd",
                  options.frames.string()};
   }
   return *options.tracking;
@@ -102,9 +145,11 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
   add_value(command, "frames", options.frames, "DIR|BAG",
             "folder of RGB-D frames, bag of ROS (.bag) or MCAP file (.mcap)")
       ->required();
-  add_choice(command, "--tracking", options.tracking, kTrackingModeNames,
-             "icp: by the depth images alone; hint: ICP from the given poses; forced: the given poses as they are "
-             "(default: forced where there are poses, else icp)");
+  add_choice(
+      command, "--tracking", options.tracking, kTrackingModeNames,
+      "icp: by the depth images alone; rgbd: by depths and colours, for fast motion too, and found again after a "
+      "loss; hint: ICP from the given poses; forced: the given poses as they are (default: forced where there "
+      "are poses, else icp)");
   add_bag_options(command, options.bag);
   add_reading_options(command, options);
 }
@@ -151,7 +196,7 @@ Result<OpenFrames> open_frames(const FrameOptions& options) {
   frames.folder = options.folder;
   SACCADE_TRY(frames.source, open_source(options, frames.folder));
   SACCADE_TRY(frames.tracking, choose_tracking(options, frames.source->info()));
-  if (frames.tracking == TrackingMode::icp) {
+  if (!needs_pose(frames.tracking)) {
     frames.folder.require_poses = false;
     SACCADE_TRY(frames.source, open_source(options, frames.folder));
   }

@@ -6,8 +6,10 @@
 
 #include "context.hpp"
 #include "fuse_frames.hpp"
+#include "fuse_loops.hpp"
 #include "fuse_measures.hpp"
 #include "fuse_options.hpp"
+#include "fuse_paging.hpp"
 #include "fuse_pictures.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
@@ -40,6 +42,8 @@ struct FuseRun {
   std::optional<MapFit> fit;
   std::optional<TrajectoryError> trajectory;
   std::size_t triangles{0};
+  std::optional<LoopReport> loops;
+  std::optional<PagingStats> paging;
 };
 
 Result<std::unique_ptr<RgbdFolderSource>> open_frames(FuseRun& run) {
@@ -58,10 +62,42 @@ Result<Reconstruction> make_reconstruction(const FuseRun& run) {
   return Reconstruction::resume(std::move(map), IcpConfig{});
 }
 
+/// Tracks and fuses all frames, and closes loops where this is asked for.
+Status fuse_all(FuseRun& run, RgbdFolderSource& source, Reconstruction& reconstruction) {
+  const Executor& executor = run.context.executor();
+  ProgressBar& bar = run.context.bar();
+  std::optional<GapFilling> gaps;
+  if (run.options.fill_gaps_px) gaps = GapFilling{*run.options.fill_gaps_px};
+  if (run.options.loops == LoopMode::online) {
+    SACCADE_TRY(const OpenFrames again, open_frames(run.options));
+    SACCADE_TRY(run.loops, fuse_frames_with_loops(source, *again.source, run.folder, reconstruction, run.tracking, gaps,
+                                                  executor, bar, run.record));
+  } else {
+    run.record = fuse_frames(source, reconstruction, run.tracking, gaps, executor, bar);
+  }
+  run.context.lap("frames");
+  if (run.record.fused.empty()) return {};
+  if (run.options.loops == LoopMode::end && !interrupted()) {
+    SACCADE_TRY(run.loops, close_loops(source, run.folder, reconstruction.map().config(), executor, bar, run.record));
+  }
+  if (!run.loops || run.loops->counts.closed + run.loops->exchanges == 0) return {};
+  SACCADE_CHECK(fuse_record_again(source, run.folder, run.record, reconstruction, executor, bar));
+  run.context.lap("loops");
+  return {};
+}
+
+Status check_loops(const FuseRun& run) {
+  if (run.options.loops != LoopMode::off && run.options.is_paged()) {
+    return Error{Errc::invalid_argument, "the map that is fused again lies in memory: leave the options of paging out",
+                 "--loops"};
+  }
+  return check_closing(run.options.loops, run.tracking);
+}
+
 json map_json(const TsdfSnapshot& map) {
   const TsdfGrid::Usage usage = map.grid.usage();
   return {{"bricks", usage.bricks()},
-          {"bytes", usage.bytes},
+          {"bytes", usage.bytes + usage.away_bytes},
           {"sectors", usage.sectors},
           {"constant_free_bricks", usage.constant_free_bricks},
           {"free_bricks", usage.free_bricks},
@@ -96,9 +132,12 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
                {{"track", timing(record.track_ms)},
                 {"integrate", timing(record.integrate_ms)},
                 {"raycast", timing(tracked ? record.raycast_ms : run.fit->raycast_ms)}}},
+              {"confidence", confidence_json(record)},
               {"depth_residual_m", nullptr},
               {"trajectory_error_m", nullptr},
               {"map", map_json(map)},
+              {"paging", paging_json(run.paging, run.options)},
+              {"loops", run.loops ? loops_json(*run.loops) : json{}},
               {"mesh", {{"triangles", run.triangles}}},
               {"peak_rss_bytes", peak_rss_bytes()}};
   if (run.fit) {
@@ -111,6 +150,7 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
     result["trajectory_error_m"] = {{"first_pose_rmse", run.trajectory->first_pose_rmse_m},
                                     {"aligned_rmse", run.trajectory->aligned_rmse_m},
                                     {"max", run.trajectory->max_m},
+                                    {"last_pose", run.trajectory->last_pose_m},
                                     {"poses", run.trajectory->poses}};
   }
   return result;
@@ -133,8 +173,10 @@ std::string fuse_text(const FuseRun& run, const TsdfSnapshot& map) {
     summary.line("trajectory", millimetres(run.trajectory->aligned_rmse_m) + " RMSE aligned, " +
                                    millimetres(run.trajectory->first_pose_rmse_m) + " from the first pose");
   }
+  if (run.loops) summary.line("loops", loops_text(*run.loops));
   const TsdfGrid::Usage usage = map.grid.usage();
-  summary.line("map", std::to_string(usage.bricks()) + " bricks, " + mebibytes(usage.bytes));
+  summary.line("map", std::to_string(usage.bricks()) + " bricks, " + mebibytes(usage.bytes + usage.away_bytes));
+  if (run.paging) summary.line("paging", paging_text(*run.paging));
   summary.line("per frame", fixed(median(record.track_ms), 1) + " ms track, " + fixed(median(record.raycast_ms), 1) +
                                 " ms ray cast, " + fixed(median(record.integrate_ms), 1) + " ms integrate (medians)");
   summary.line("results", run.out);
@@ -156,7 +198,7 @@ Status copy_gravity(const FuseRun& run, const RunFolder& out) {
   const std::filesystem::path given = run.options.frames / kGravityFile;
   if (std::filesystem::equivalent(given, out / kGravityFile, ignored)) return {};
   SACCADE_CHECK(out.remove(std::array{kGravityFile}));
-  const bool in_given_world = run.tracking != TrackingMode::icp && !run.folder.poses_file;
+  const bool in_given_world = needs_pose(run.tracking) && !run.folder.poses_file;
   if (!in_given_world || !std::filesystem::is_regular_file(given, ignored)) return {};
   SACCADE_TRY(const std::string direction, read_text_file(given));
   return write_file_atomically(out / kGravityFile, direction);
@@ -174,7 +216,7 @@ Status write_results(FuseRun& run, const RgbdFolderSource& source, const RunFold
   run.context.lap("save");
   if (run.options.write_mesh) {
     run.context.stage("extracting the mesh");
-    const TriangleMesh mesh = extract_mesh(map, executor);
+    SACCADE_TRY(const TriangleMesh mesh, mesh_of(map, executor));
     run.triangles = mesh.triangles.size();
     SACCADE_CHECK(write_mesh(out / "mesh.ply", mesh));
     run.context.lap("mesh");
@@ -185,6 +227,17 @@ Status write_results(FuseRun& run, const RgbdFolderSource& source, const RunFold
     run.context.lap("pictures");
   }
   return {};
+}
+
+/// Saves what the frames gave before the store of a paged map failed. Returns the failure, and where the map is.
+Error save_before_failure(const FuseRun& run, const RunFolder& out, const TsdfSnapshot& map) {
+  Error failure = *run.record.failure;
+  if (run.record.fused.empty() || !out.remove(std::span{kRunFiles}.first(1))) return failure;
+  const bool saved = save_map(map, out / "map.sacmap", run.context.executor()) && write_trajectory(out, run.record);
+  if (!saved) return failure;
+  failure.message += "; the map of the " + std::to_string(run.record.fused.size()) + " frames before is " +
+                     (out / "map.sacmap").string() + ", for --continue";
+  return failure;
 }
 
 class Fuse final : public Command {
@@ -211,17 +264,20 @@ class Fuse final : public Command {
   }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
-    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, 0};
+    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, 0, {}, {}};
     SACCADE_TRY(const auto source, open_frames(run));
     SACCADE_TRY(Reconstruction reconstruction, make_reconstruction(run));
+    SACCADE_CHECK(check_loops(run));
     SACCADE_CHECK(context.open_folder());
     context.lap("open");
-    std::optional<GapFilling> gaps;
-    if (fuse_.fill_gaps_px) gaps = GapFilling{*fuse_.fill_gaps_px};
-    run.record = fuse_frames(*source, reconstruction, run.tracking, gaps, context.executor(), context.bar());
-    context.lap("frames");
-
+    SACCADE_CHECK(page_map(reconstruction.map(), fuse_, context.folder()->path()));
+    SACCADE_CHECK(fuse_all(run, *source, reconstruction));
+    run.paging = reconstruction.map().paging();
+    // The steps below bring in what they need, one view or block after the other.
+    const Status rests = reconstruction.map().page_out_all(context.executor());
+    if (!rests && !run.record.failure) run.record.failure = rests.error();
     const TsdfSnapshot& map = reconstruction.map().content();
+    if (run.record.failure) return save_before_failure(run, *context.folder(), map);
     if (run.record.fused.empty() || map.grid.empty()) return nothing_fused(run.record, fuse_.frames);
     if (run.tracking != TrackingMode::forced) run.trajectory = measure_trajectory(run.record);
     SACCADE_TRY(run.fit,
@@ -229,6 +285,7 @@ class Fuse final : public Command {
     context.lap("residual");
     SACCADE_CHECK(write_results(run, *source, *context.folder(), map));
     Outcome outcome{.result = result_json(run, map), .text = fuse_text(run, map)};
+    if (run.tracking == TrackingMode::rgbd) note_missing_colors(run.record, outcome);
     warn_of_left_out(run.record, outcome);
     warn_of_damage(fuse_.frames, run.info, outcome);
     if (interrupted()) {

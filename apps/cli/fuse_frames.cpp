@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuse_frames.hpp"
 
+#include <algorithm>
+
 #include "interrupt.hpp"
+#include "saccade/core/statistics.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -25,7 +28,9 @@ void record_report(const Frame& frame, const std::optional<Pose>& T_world_true, 
     record.lost.push_back({frame.name, report.why});
     return;
   }
-  record.fused.push_back({frame.index, frame.name, frame.time_s, report.T_world_camera, T_world_true});
+  if (report.relocalised) progress.note(frame.name + ": found again, from an earlier view");
+  record.fused.push_back({frame.index, frame.name, frame.time_s, report.T_world_camera, T_world_true, report.confidence,
+                          report.relocalised});
   record.integrate_ms.push_back(report.integrate_ms);
   if (report.track_ms > 0.0) {
     record.raycast_ms.push_back(report.raycast_ms);
@@ -59,8 +64,13 @@ FuseRecord process_frames(CameraSource& source, std::string_view stage, const st
     }
     record.gaps = *chosen;
     frame.depth = fill_gaps(frame.depth, *chosen);
+    if (!frame.color) ++record.without_color;
     const std::optional<Pose> T_world_true = frame.T_world_camera;
     const auto report = process(frame);
+    if (!report && (report.error().code == Errc::io_failure || report.error().code == Errc::corrupt_data)) {
+      record.failure = report.error();
+      break;
+    }
     if (report) {
       record_report(frame, T_world_true, *report, record, progress);
     } else {
@@ -106,6 +116,25 @@ void warn_of_left_out(const FuseRecord& record, Outcome& outcome) {
       "warning: of " + std::to_string(record.fused.size() + left_out) + " frames only " +
       std::to_string(record.fused.size()) + " could be used, " + std::to_string(record.lost.size()) + " are lost and " +
       std::to_string(record.skipped.size()) + " skipped; the first, " + first.name + ": " + first.reason);
+}
+
+nlohmann::json confidence_json(const FuseRecord& record) {
+  nlohmann::json frames = nlohmann::json::array();
+  std::vector<double> all;
+  for (const FusedFrame& frame : record.fused) {
+    if (!frame.confidence) continue;
+    all.push_back(*frame.confidence);
+    frames.push_back({{"frame", frame.name}, {"confidence", *frame.confidence}, {"relocalised", frame.relocalised}});
+  }
+  if (all.empty()) return nullptr;
+  return {{"median", median(all)}, {"least", *std::min_element(all.begin(), all.end())}, {"frames", frames}};
+}
+
+void note_missing_colors(const FuseRecord& record, Outcome& outcome) {
+  if (record.without_color == 0) return;
+  const std::size_t all = record.fused.size() + record.lost.size();
+  outcome.warnings.push_back("note: " + std::to_string(record.without_color) + " of " + std::to_string(all) +
+                             " frames have no colours and were tracked by their depths alone");
 }
 
 nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames) {

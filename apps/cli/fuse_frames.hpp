@@ -24,6 +24,8 @@ struct FusedFrame {
   std::optional<double> time_s;
   Pose T_world_camera{Pose::Identity()};  ///< the pose that was used
   std::optional<Pose> T_world_true;       ///< the pose that the source knows
+  std::optional<double> confidence{};     ///< FrameReport::confidence, of a frame that was tracked
+  bool relocalised{false};                ///< found again after a loss
 };
 
 /// A frame that is not in the map.
@@ -39,14 +41,16 @@ struct FuseRecord {
   std::vector<double> raycast_ms;     ///< one for each fused frame that was tracked
   std::vector<double> track_ms;
   std::vector<double> integrate_ms;  ///< one for each fused frame
+  std::size_t without_color{0};      ///< frames without a colour image
   GapFilling gaps;                   ///< what was filled
+  std::optional<Error> failure;      ///< why no frame after these could be processed
 };
 
 /// What is done with a frame; it may set the frame's pose.
 using FrameProcess = std::function<Result<FrameReport>(Frame&)>;
 
-/// Gaps are filled in what is processed; without `gaps`, the first frame decides. Until the source ends or the program
-/// is interrupted.
+/// Gaps are filled in what is processed; without `gaps`, the first frame decides. Until the source ends, the program is
+/// interrupted, or `process` answers io_failure or corrupt_data, which is not the frame's fault: a paged map's store.
 [[nodiscard]] FuseRecord process_frames(CameraSource& source, std::string_view stage,
                                         const std::optional<GapFilling>& gaps, ProgressBar& progress,
                                         const FrameProcess& process);
@@ -61,6 +65,12 @@ using FrameProcess = std::function<Result<FrameReport>(Frame&)>;
 
 /// Adds a warning, which --quiet does not silence, that most frames are not in the result, and why.
 void warn_of_left_out(const FuseRecord& record, Outcome& outcome);
+
+/// Confidence of the frames that were tracked: {median, least, frames: [{frame, confidence, relocalised}, …]}; null
+/// where none was.
+[[nodiscard]] nlohmann::json confidence_json(const FuseRecord& record);
+/// Adds a note where colours were asked for and frames had none.
+void note_missing_colors(const FuseRecord& record, Outcome& outcome);
 
 /// [{frame, reason}, …]
 [[nodiscard]] nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames);

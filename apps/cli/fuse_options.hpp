@@ -2,9 +2,12 @@
 #pragma once
 // FuseOptions: the command line of `saccade fuse`, and what it means for the library.
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 
 #include "frame_options.hpp"
+#include "loop_mode.hpp"
 #include "saccade/map/tsdf_map.hpp"
 
 namespace CLI {
@@ -22,8 +25,14 @@ struct FuseOptions : FrameOptions {
   TsdfConfig map;
   bool map_size_given{false};
   std::filesystem::path continue_map;
+  LoopMode loops{LoopMode::off};
   bool write_mesh{true};
   bool write_pictures{true};
+  std::optional<std::size_t> map_memory_bytes;
+  std::optional<double> moving_volume_m;
+  std::filesystem::path page_folder;
+
+  [[nodiscard]] bool is_paged() const { return map_memory_bytes || moving_volume_m; }
 };
 
 /// Declares the options; they outlive the parsing.

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "fuse_paging.hpp"
 #include "interrupt.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/map/raycast.hpp"
@@ -55,8 +56,12 @@ Status write_fuse_pictures(const RunFolder& out, const TsdfSnapshot& map, const 
   }
   progress.update("drawing", done, chosen.size() + 1);
   const FusedFrame& first = record.fused.front();
-  const ColorImage ternary = ternary_figure(map, wider_view(camera, first.T_world_camera), executor,
-                                            "Occupied, empty and unknown, seen from " + first.name);
+  const Viewpoint wider = wider_view(camera, first.T_world_camera);
+  SACCADE_TRY(const PictureMap seen, map_for_picture(map, wider, executor));
+  TernaryPictureConfig ternary_config;
+  ternary_config.crop = seen.crop;
+  const ColorImage ternary =
+      ternary_figure(seen.map, wider, executor, "Occupied, empty and unknown, seen from " + first.name, ternary_config);
   return write_png(out / "ternary.png", ternary);
 }
 

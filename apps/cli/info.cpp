@@ -17,6 +17,7 @@
 #include "saccade/core/version.hpp"
 #include "saccade/cuda/device.hpp"
 #include "saccade/devices/programs.hpp"
+#include "saccade/loops/pose_graph.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -103,6 +104,12 @@ std::string cuda_text(const json& found) {
          found["ptx_target"].get<std::string>();
 }
 
+/// The solver that closing loops needs; null: not in this build.
+json loops_json() {
+  const std::string solver = pose_graph_solver();
+  return solver.empty() ? json{} : json(solver);
+}
+
 json program_json(const Executor& executor) {
   return {{"compiler", compiler()},
           {"processor", processor()},
@@ -114,6 +121,7 @@ json program_json(const Executor& executor) {
           {"backend", executor.backend_name()},
           {"cuda", cuda_json()},
           {"ros", ros_json()},
+          {"loops", loops_json()},
           {"dependencies", dependencies()}};
 }
 
@@ -148,6 +156,8 @@ std::string program_text(const json& about) {
   summary.line("back ends", present.substr(1) + (absent.empty() ? "" : "; absent:" + absent));
   summary.line("GPU", cuda_text(about["cuda"]));
   summary.line("devices", ros_text(about["ros"]));
+  summary.line("loops", about["loops"].is_null() ? "absent: ceres (libceres-dev, when saccade is built)"
+                                                 : about["loops"].get<std::string>());
   std::string versions;
   for (const auto& [name, version] : about["dependencies"].items()) {
     versions += (versions.empty() ? "" : ", ") + name + " " + version.get<std::string>();

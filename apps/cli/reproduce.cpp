@@ -58,8 +58,8 @@ void add_sizes(CLI::App& command, reproduce::TableOptions& options) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000}));
   command.add_flag(
       "--as-printed", options.as_printed,
-      "without the additions of Saccade: the updates of Tables 2.7 and 2.8 as the thesis prints them, and the mode "
-      "filter of Tables 4.1, 4.3 and their figures");
+      "without the additions of Saccade: the updates of Tables 2.7 and 2.8 as the thesis prints them, and mode "
+      "filter and segmentation of Tables 4.1 to 4.3 and their figures");
 }
 
 void add_outputs(CLI::App& command, ReproduceArguments& arguments) {

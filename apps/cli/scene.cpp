@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade scene list|render|export, and sequence: the scenes there are, a picture of one, and its truth for others to
-// check against.
+// saccade scene list|render|export, scan and sequence: the scenes there are, a picture of one, and its truth for others
+// to check against.
 #include <array>
 #include <iomanip>
 #include <numeric>
@@ -16,6 +16,7 @@
 #include "saccade/scene/scene_yaml.hpp"
 #include "saccade/scene/surface_samples.hpp"
 #include "saccade/trial/metrics.hpp"
+#include "scene_scan.hpp"
 #include "scene_sequence.hpp"
 
 namespace saccade::cli {
@@ -25,7 +26,8 @@ using nlohmann::json;
 
 constexpr std::array<std::string_view, 4> kExportFiles{"scene.json", "true_mesh.ply", "surface.ply", "scene.png"};
 
-constexpr const char* kSceneHelp{"name of a built-in scene, clutter:SEED, a YAML file, or a mesh file"};
+constexpr const char* kSceneHelp{
+    "name of a built-in scene, clutter:SEED, room:SEED, street:SEED, a YAML file, or a mesh file"};
 
 json scene_json(const RayScene& rays) {
   json objects = json::array();
@@ -132,7 +134,9 @@ class SceneList final : public Command {
           {{"name", name}, {"objects", made.scene.objects.size()}, {"regions", 0}, {"segments", segments}});
       text << std::setw(16) << name << segments << " segments, for surfels\n";
     }
-    text << "clutter:SEED    eight random objects\nFILE            a scene of your own: YAML, or a mesh on a table\n";
+    text << "clutter:SEED    eight random objects\nroom:SEED       a furnished room, for scans\n"
+            "street:SEED     a street between houses, for scans\nFILE            a scene of your own: YAML, or a mesh "
+            "on a table\n";
     return Outcome{.result = {{"scenes", std::move(scenes)}}, .text = text.str()};
   }
 };
@@ -232,6 +236,7 @@ class SceneCommands final : public Command {
     parts.push_back(std::make_unique<SceneList>());
     parts.push_back(std::make_unique<SceneRender>());
     parts.push_back(make_scene_sequence());
+    parts.push_back(make_scene_scan());
     parts.push_back(std::make_unique<SceneExport>());
     return parts;
   }

@@ -14,6 +14,7 @@
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/scene/place_scenes.hpp"
 #include "saccade/scene/rendered_sequence.hpp"
 
 namespace saccade::cli {
@@ -49,14 +50,37 @@ std::string frame_name(std::size_t index) {
 
 /// Sequence that the scene and the options describe together.
 struct Sequence {
-  SurfelScene scene;
-  std::size_t frames{0};
+  Scene scene;
+  std::vector<Pose> true_poses;
   RenderedSequenceConfig config;
   json switches;
 };
 
+/// Scene, path and sensor that a name stands for.
+struct Place {
+  Scene scene;
+  std::vector<Pose> poses;
+  std::string_view sensor{"xtion"};
+  ColorCameraConfig color{};
+};
+
+Result<Place> place_of(const SequenceOptions& options, std::uint64_t seed) {
+  if (options.scene.find(':') != std::string::npos) {
+    SACCADE_TRY(PlaceScene place, place_scene(options.scene));
+    return Place{std::move(place.scene), carried_poses(place.path, options.frames.value_or(place.frames), seed)};
+  }
+  auto made = surfel_scene(options.scene);
+  if (!made) {
+    Error error = made.error();
+    error.message += ", and loop:SEED and alike:SEED";
+    return error;
+  }
+  return Place{std::move(made->scene), hand_held_poses(made->path, options.frames.value_or(made->frames), seed),
+               made->sensor, made->color};
+}
+
 Result<Sequence> sequence_of(const SequenceOptions& options, std::uint64_t seed) {
-  SACCADE_TRY(SurfelScene scene, surfel_scene(options.scene));
+  SACCADE_TRY(Place scene, place_of(options, seed));
   const std::string sensor{options.sensor.empty() ? std::string{scene.sensor} : options.sensor};
   SACCADE_TRY(RenderedSequenceConfig config, surfel_sensor(sensor));
   CameraOptions size;
@@ -82,8 +106,7 @@ Result<Sequence> sequence_of(const SequenceOptions& options, std::uint64_t seed)
                 {"color_noise", kOnOff.of(options.color_noise)},
                 {"vignetting", kVignettingNames.of(config.color.vignetting)},
                 {"auto_gain", kOnOff.of(config.color.automatic_gain)}};
-  const std::size_t frames = options.frames.value_or(scene.frames);
-  return Sequence{std::move(scene), frames, config, std::move(switches)};
+  return Sequence{std::move(scene.scene), std::move(scene.poses), config, std::move(switches)};
 }
 
 /// An earlier sequence must not end where this one does, with other frames behind it.
@@ -134,8 +157,8 @@ Status write_shots(const RunFolder& out, std::span<const Shot> shots, const Exec
 json document(const Sequence& sequence, std::uint64_t seed, const std::vector<std::string>& segments) {
   json names = json::object();
   for (std::size_t label = 1; label < segments.size(); ++label) names[std::to_string(label)] = segments[label];
-  return {{"scene", sequence.scene.scene.name}, {"frames", sequence.frames},   {"complete", false}, {"seed", seed},
-          {"switches", sequence.switches},      {"segments", std::move(names)}};
+  return {{"scene", sequence.scene.name},  {"frames", sequence.true_poses.size()}, {"complete", false}, {"seed", seed},
+          {"switches", sequence.switches}, {"segments", std::move(names)}};
 }
 
 class SceneSequence final : public Command {
@@ -147,7 +170,7 @@ class SceneSequence final : public Command {
   }
 
   void declare(Options& options) override {
-    options.value("scene", options_.scene, "SCENE", joined(kSurfelScenes)).required();
+    options.value("scene", options_.scene, "SCENE", joined(kSurfelScenes) + ", loop:SEED, alike:SEED").required();
     options.folder({.help = "folder for the frames; made if it is not there",
                     .marker = kDocument,
                     .required = true,
@@ -179,10 +202,10 @@ class SceneSequence final : public Command {
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     const Executor& executor = context.executor();
     SACCADE_TRY(Sequence sequence, sequence_of(options_, context.seed()));
-    SACCADE_TRY(const RayScene rays, RayScene::build(sequence.scene.scene));
+    SACCADE_TRY(const RayScene rays, RayScene::build(sequence.scene));
     SACCADE_TRY(RenderedSequence camera,
-                RenderedSequence::create(rays, hand_held_poses(sequence.scene.path, sequence.frames, context.seed()),
-                                         sequence.config, executor));
+                RenderedSequence::create(rays, sequence.true_poses, sequence.config, executor));
+    const std::size_t frames = sequence.true_poses.size();
     SACCADE_CHECK(context.open_folder());
     const RunFolder& out = *context.folder();
     SACCADE_CHECK(remove_earlier(out));
@@ -194,11 +217,11 @@ class SceneSequence final : public Command {
     std::vector<double> gains;
     std::vector<Pose> true_poses;
     const std::size_t at_once = std::max<std::size_t>(1, executor.threads());
-    while (true_poses.size() < sequence.frames && !interrupted()) {
+    while (true_poses.size() < frames && !interrupted()) {
       std::vector<Shot> shots;
-      const std::size_t wanted = std::min(at_once, sequence.frames - true_poses.size());
+      const std::size_t wanted = std::min(at_once, frames - true_poses.size());
       while (shots.size() < wanted && !interrupted()) {
-        context.bar().update("rendering", true_poses.size(), sequence.frames);
+        context.bar().update("rendering", true_poses.size(), frames);
         const Stopwatch rendering;
         SACCADE_TRY(std::optional<Frame> frame, camera.next());
         render_ms.push_back(rendering.elapsed_ms());
@@ -212,12 +235,12 @@ class SceneSequence final : public Command {
     }
     if (!true_poses.empty()) SACCADE_CHECK(write_matrices(out / kTruePoses, true_poses));
     written["frames"] = true_poses.size();
-    written["complete"] = true_poses.size() == sequence.frames;
+    written["complete"] = true_poses.size() == frames;
     if (sequence.config.color.automatic_gain) written["gains"] = gains;
     SACCADE_CHECK(write_json(out / kDocument, written));
     json result{
         {"out", context.out().string()},
-        {"scene", sequence.scene.scene.name},
+        {"scene", sequence.scene.name},
         {"switches", sequence.switches},
         {"frames", true_poses.size()},
         {"segments", camera.segments().names().size() - 1},

@@ -42,6 +42,7 @@ inline constexpr std::array kSegmentFiles{kSegmentCloud, kSegmentPicture, kSegme
 struct SegmentOptions {
   std::filesystem::path input;  ///< a cloud, or a map
   SegmentMethod method{SegmentMethod::lccp};
+  bool as_printed{false};         ///< sv_lccp and flood_fill to the letter, where no option says otherwise
   std::filesystem::path out;      ///< file of the labelled cloud; empty: none
   std::filesystem::path picture;  ///< empty: none
   std::filesystem::path report;   ///< page of the report; empty: none

@@ -89,6 +89,27 @@ void refuse(const CLI::App& command, SegmentMethod method, std::initializer_list
   }
 }
 
+/// Applies --as-printed to what was not named.
+void follow_the_thesis(const CLI::App& command, SegmentOptions& options) {
+  if (options.method == SegmentMethod::lccp) {
+    usage_error("--as-printed", "is for --method sv-lccp and flood-fill, which the thesis uses with surfels");
+  }
+  if (options.fills()) {
+    options.flood_fill.unknown_is_alike = FloodFillConfig::as_printed().unknown_is_alike;
+    return;
+  }
+  const SvLccpConfig printed = SvLccpConfig::as_printed();
+  SupervoxelConfig& own = options.supervoxels;
+  if (command.count("--rounds") == 0) own.rounds = printed.supervoxels.rounds;
+  own.seeds_settle = printed.supervoxels.seeds_settle;
+  own.min_seed_share = printed.supervoxels.min_seed_share;
+  own.reach = printed.supervoxels.reach;
+  own.moves_in_growth = printed.supervoxels.moves_in_growth;
+  own.opposite_is_alike = printed.supervoxels.opposite_is_alike;
+  if (command.count("--sanity") == 0) options.lccp.sanity = printed.lccp.sanity;
+  options.lccp.smooth = printed.lccp.smooth;
+}
+
 /// Refuses options that the method has no use for, and sets the method's own defaults.
 void apply_method(const CLI::App& command, SegmentOptions& options) {
   if (options.method == SegmentMethod::lccp) refuse(command, options.method, {"--threshold", "--radius", "--curve"});
@@ -121,6 +142,7 @@ void apply_method(const CLI::App& command, SegmentOptions& options) {
     constexpr std::size_t kListFrom{10};
     if (command.count("--list-from") == 0) options.list_from = kListFrom;
   }
+  if (options.as_printed) follow_the_thesis(command, options);
   if (options.curve_thresholds.empty()) options.curve_thresholds = default_thresholds();
 }
 
@@ -162,6 +184,9 @@ void declare_segment(Options& declared, SegmentOptions& options) {
                    .opened_by_command = true});
   declared.value("--picture", options.picture, "FILE", "PNG of the segments and of their saliency");
   declared.flag("--no-pictures{false}", options.write_pictures, "draw no picture into the folder of --out");
+  declared.flag("--as-printed", options.as_printed,
+                "sv-lccp, flood-fill: to the letter of the thesis, where no option says otherwise; supervoxels and "
+                "LCCP as PCL has them where nothing is set, and unknown normals that separate");
   add_supervoxel_options(command, options);
   add_lccp_options(command, options.lccp);
   add_surfel_options(command, options);

@@ -131,6 +131,7 @@ json segment_json(const SegmentOptions& options, const SegmentInput& input, cons
   json result{{"input", options.input.string()},
               {"kind", input.is_map ? "map" : "cloud"},
               {"method", kSegmentMethodNames.of(options.method)},
+              {"as_printed", options.as_printed},
               {"parameters", parameters_json(options)},
               {"rows", input.cloud.positions_m.size()},
               {"points", findings.points},

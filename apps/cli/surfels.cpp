@@ -5,11 +5,13 @@
 
 #include "context.hpp"
 #include "fuse_frames.hpp"
+#include "fuse_loops.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/surfel_cloud.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/sheet.hpp"
 #include "saccade/report/surfel_picture.hpp"
+#include "saccade/tracking/surfel_surface.hpp"
 #include "summary.hpp"
 #include "surfels_options.hpp"
 
@@ -35,6 +37,7 @@ struct SurfelsRun {
   std::vector<ExposureReport> exposures;  ///< one for each frame with colour
   FuseRecord record;
   SurfelTimes times;
+  std::optional<LoopReport> loops;
   std::size_t without_color{0};
   std::size_t evicted_modes{0};
   std::size_t written{0};
@@ -66,12 +69,32 @@ Status add_frame(SurfelsRun& run, Frame& frame) {
   return {};
 }
 
-/// With poses that are given nothing is tracked; else a TSDF map of the same frames says where the camera is.
+/// Tracks a frame against the surfels; the first defines the world.
+Result<FrameReport> track_surfels(SurfelsRun& run, RgbdTracker& tracker, const Frame& frame) {
+  FrameReport report;
+  if (run.fusion.map().size() == 0) {
+    report.T_world_camera = frame.T_world_camera.value_or(Pose::Identity());
+    return report;
+  }
+  const PinholeCamera& camera = run.frames.source->camera();
+  return tracker.track(surface_of_surfels(run.fusion.map(), camera, run.executor), frame, camera, run.executor);
+}
+
+/// With poses that are given nothing is tracked; else the surfels or a TSDF map of the same frames say where the camera
+/// is.
 Status fuse_surfels(SurfelsRun& run) {
   SACCADE_TRY(Reconstruction reconstruction, Reconstruction::create({}));
+  RgbdTracker tracker;
+  const bool by_surfels =
+      run.frames.tracking == TrackingMode::rgbd && run.options.track_against == TrackedSurface::surfels;
   const auto process = [&](Frame& frame) -> Result<FrameReport> {
     FrameReport report;
-    if (run.frames.tracking != TrackingMode::forced) {
+    if (by_surfels) {
+      SACCADE_TRY(report, track_surfels(run, tracker, frame));
+      if (report.status != FrameReport::Status::fused) return report;
+      frame.T_world_camera = report.T_world_camera;
+      tracker.fused(frame, run.frames.source->camera(), report.T_world_camera, run.executor);
+    } else if (run.frames.tracking != TrackingMode::forced) {
       SACCADE_TRY(report, reconstruction.process(frame, run.frames.source->camera(), run.frames.tracking,
                                                  frame.T_world_camera, run.executor));
       if (report.status != FrameReport::Status::fused) return report;
@@ -84,6 +107,29 @@ Status fuse_surfels(SurfelsRun& run) {
   std::optional<GapFilling> gaps;
   if (run.options.fill_gaps_px) gaps = GapFilling{*run.options.fill_gaps_px};
   run.record = process_frames(*run.frames.source, "fusing surfels", gaps, run.progress, process);
+  return {};
+}
+
+/// Closes the loops of the tracked poses. Where that moves any, fuses all surfels again along the new ones.
+Status close_surfel_loops(SurfelsRun& run) {
+  const RgbdFolderSource& source = *run.frames.source;
+  SACCADE_TRY(run.loops, close_loops(source, run.frames.folder, TsdfConfig{}, run.executor, run.progress, run.record));
+  if (run.loops->counts.closed == 0 || interrupted()) return {};
+  SACCADE_TRY(run.fusion, SurfelFusion::create(run.options.fusion));
+  SACCADE_TRY(run.filter, ModeFilter::create(run.options.filter));
+  SACCADE_TRY(run.exposure, ExposureCompensation::create());
+  run.exposures.clear();
+  run.times = {};
+  run.without_color = run.evicted_modes = 0;
+  const ReadFrame read = frames_again(source, run.frames.folder, run.record.gaps);
+  std::size_t done{0};
+  for (const FusedFrame& fused : run.record.fused) {
+    if (interrupted()) break;
+    run.progress.update("fusing surfels along corrected poses", done++, run.record.fused.size());
+    SACCADE_TRY(Frame frame, read(fused.index));
+    frame.T_world_camera = fused.T_world_camera;
+    SACCADE_CHECK(add_frame(run, frame));
+  }
   return {};
 }
 
@@ -151,6 +197,13 @@ json exposure_json(const SurfelsRun& run) {
           {"not_estimated", untold}};
 }
 
+/// Surface that the frames were aligned to; null where none was.
+json tracked_surface_json(const SurfelsRun& run) {
+  if (run.frames.tracking == TrackingMode::forced) return nullptr;
+  const bool rgbd = run.frames.tracking == TrackingMode::rgbd;
+  return kTrackedSurfaceNames.of(rgbd ? run.options.track_against : TrackedSurface::map);
+}
+
 json result_json(const SurfelsRun& run) {
   const auto median_json = [](const std::vector<double>& ms) -> json { return {{"median", median(ms)}}; };
   const std::filesystem::path average = run.options.average_out();
@@ -160,6 +213,9 @@ json result_json(const SurfelsRun& run) {
           {"average_out", average.empty() ? json(nullptr) : json(average.string())},
           {"mode_filter", kModeFilterUseNames.of(run.options.mode_filter)},
           {"tracking", to_string(run.frames.tracking)},
+          {"track_against", tracked_surface_json(run)},
+          {"confidence", confidence_json(run.record)},
+          {"loops", run.loops ? loops_json(*run.loops) : json{}},
           {"interrupted", interrupted()},
           {"frames", run.record.fused.size()},
           {"frames_without_color", run.without_color},
@@ -177,6 +233,7 @@ json result_json(const SurfelsRun& run) {
           {"image_sigma", run.options.fusion.image_sigma},
           {"choice", run.options.filtered() ? json(kModeChoiceNames.of(run.options.choice)) : json(nullptr)},
           {"places", kSurfelPlacesNames.of(places)},
+          {"as_printed", run.options.as_printed},
           {"exposure", exposure_json(run)},
           {"ms_per_frame",
            {{"associate", median_json(run.times.associate)},
@@ -194,6 +251,7 @@ std::string surfels_text(const SurfelsRun& run) {
   summary.line("frames", std::to_string(record.fused.size()) + " fused, " + std::to_string(record.lost.size()) +
                              " lost, " + std::to_string(record.skipped.size()) + " skipped");
   summary.line("tracking", to_string(run.frames.tracking));
+  if (run.loops) summary.line("loops", loops_text(*run.loops));
   summary.line("surfels", std::to_string(run.fusion.map().size()) + ", of which " + std::to_string(run.written) +
                               " have a confidence of at least " + fixed(run.min_weight(), 1) + " and are written");
   if (run.uncolored > 0) {
@@ -249,25 +307,32 @@ class Surfels final : public Command {
                    {},
                    {},
                    {},
+                   {},
                    0,
                    0,
                    0,
                    0};
     SACCADE_CHECK(check_color(run));
+    SACCADE_CHECK(check_closing(surfels_.loops, run.frames.tracking));
     SACCADE_CHECK(check_outputs(surfels_, context.global()));
     context.lap("open");
     SACCADE_CHECK(fuse_surfels(run));
     context.lap("frames");
     if (run.fusion.map().size() == 0) return nothing_fused(run.record, surfels_.frames);
+    if (surfels_.loops == LoopMode::end && !interrupted()) {
+      SACCADE_CHECK(close_surfel_loops(run));
+      context.lap("loops");
+    }
     SACCADE_CHECK(check_color(run));
     SACCADE_CHECK(write_clouds(run));
     if (run.written == 0) return nothing_written(run);
     context.lap("write");
     Outcome outcome{.result = result_json(run), .text = surfels_text(run)};
+    if (run.frames.tracking == TrackingMode::rgbd) note_missing_colors(run.record, outcome);
     warn_of_left_out(run.record, outcome);
     warn_of_damage(surfels_.frames, run.frames.source->info(), outcome);
     if (interrupted()) {
-      outcome.cut_short = "interrupted after " + std::to_string(run.record.fused.size()) +
+      outcome.cut_short = "interrupted after " + std::to_string(run.times.total.size()) +
                           " frames; what they gave is in " + surfels_.out.string();
     }
     return outcome;

@@ -21,6 +21,15 @@ void check_options_have_effect(const CLI::App& command, const SurfelsOptions& op
   }
 }
 
+/// Applies --as-printed to what was not named.
+void follow_the_thesis(const CLI::App& command, SurfelsOptions& options) {
+  if (!options.filtered()) usage_error("--as-printed", "has no meaning with --mode-filter off");
+  const ModeFilterConfig printed = ModeFilterConfig::as_printed();
+  if (command.count("--choice") == 0) options.choice = ModeChoice::heaviest;
+  if (!options.places) options.places = SurfelPlaces::modes;
+  if (command.count("--max-depth-change") == 0) options.filter.max_depth_change_m = printed.max_depth_change_m;
+}
+
 }  // namespace
 
 void add_surfels_options(CLI::App& command, SurfelsOptions& options) {
@@ -31,6 +40,11 @@ void add_surfels_options(CLI::App& command, SurfelsOptions& options) {
   add_choice(command, "--mode-filter", options.mode_filter, kModeFilterUseNames,
              "on: of each surfel's colours one that was seen, not a blend; off: averages; both: averages, too, in "
              "NAME.average.EXT beside --out");
+  add_choice(command, "--track-against", options.track_against, kTrackedSurfaceNames,
+             "surface that --tracking rgbd aligns frames to: the surfels, or a TSDF map of the same frames");
+  add_choice(
+      command, "--loops", options.loops, kSurfelLoopNames,
+      "end: close the loops of tracked poses after the run, and fuse all surfels again along the corrected ones");
   add_value(command, "--image-sigma", options.fusion.image_sigma, "SIGMA",
             "width of the weight of pixels around the image's centre: smaller for strong vignetting");
   add_choice(command, "--exposure-compensation", options.exposure_compensation, kOnOff,
@@ -46,6 +60,9 @@ void add_surfels_options(CLI::App& command, SurfelsOptions& options) {
   add_value(command, "--max-depth-change", options.filter.max_depth_change_m, "METRES",
             "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: all "
             "move, as in the thesis");
+  command.add_flag("--as-printed", options.as_printed,
+                   "the mode filter to the letter of the thesis: --choice heaviest --places modes --max-depth-change "
+                   "inf, where they are not given");
   add_value(command, "--min-confidence", options.min_confidence, "W",
             "surfels that were seen less, by the sum of their observations' weights, are not written: often they are "
             "no surfaces; 0: all are (default: 10, or a twentieth of the number of frames if that is less)");
@@ -55,8 +72,12 @@ void add_surfels_options(CLI::App& command, SurfelsOptions& options) {
 
 void check_surfels_options(const CLI::App& command, SurfelsOptions& options) {
   check_frame_options(options);
+  if (command.count("--track-against") > 0 && options.tracking != TrackingMode::rgbd) {
+    usage_error("--track-against", "needs --tracking rgbd; icp and hint track against a TSDF map");
+  }
   const std::string extension = options.out.extension().string();
   if (extension != ".ply" && extension != ".pcd") usage_error("--out", "must end in .ply or .pcd");
+  if (options.as_printed) follow_the_thesis(command, options);
   check_options_have_effect(command, options);
   if (!options.picture.empty() && options.picture.extension() != ".png") {
     usage_error("--picture", "needs a name that ends in .png, not '" + options.picture.string() + "'");

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "frame_options.hpp"
+#include "loop_mode.hpp"
 #include "saccade/core/names.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
@@ -33,13 +34,24 @@ enum class SurfelPlaces { average, modes };
 inline constexpr auto kSurfelPlacesNames =
     make_names<SurfelPlaces>({{SurfelPlaces::average, "average"}, {SurfelPlaces::modes, "modes"}});
 
+/// Words of --loops: surfels are fused again once all loops are known.
+inline constexpr auto kSurfelLoopNames = make_some_names<LoopMode>({{LoopMode::off, "off"}, {LoopMode::end, "end"}});
+
+/// Surface that --tracking rgbd aligns frames to: the surfels, or a TSDF map of the same frames.
+enum class TrackedSurface { surfels, map };
+inline constexpr auto kTrackedSurfaceNames =
+    make_names<TrackedSurface>({{TrackedSurface::surfels, "surfels"}, {TrackedSurface::map, "map"}});
+
 struct SurfelsOptions : FrameOptions {
   std::filesystem::path out;
   std::filesystem::path picture;
   ModeFilterUse mode_filter{ModeFilterUse::on};
   std::optional<double> min_confidence;  ///< default: min_weight
   bool exposure_compensation{false};
+  TrackedSurface track_against{TrackedSurface::surfels};
+  LoopMode loops{LoopMode::off};
   ModeChoice choice{ModeChoice::sharpened};
+  bool as_printed{false};              ///< Algorithm 6 and eq. 4.11 to the letter, where no option says otherwise
   std::optional<SurfelPlaces> places;  ///< default: as the choice needs it
   SurfelFusionConfig fusion;
   ModeFilterConfig filter;

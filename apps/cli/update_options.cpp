@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "add_value.hpp"
+#include "explore_surfels.hpp"
 #include "length_options.hpp"
 #include "summary.hpp"
 
@@ -46,6 +47,9 @@ void check_subject(UpdateOptions& options) {
     return;
   }
   options.scene = options.cell_file;
+  if (options.map == kSurfelsWord)
+    usage_error("--map",
+                "an update forgets what has changed, and surfels are never removed; give a saved map (.sacmap)");
   check_device_options(options);
   if (options.hand_command.empty()) options.hand_command = options.cell.hand.command;
   if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";

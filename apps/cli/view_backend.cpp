@@ -15,6 +15,18 @@ Result<GainResult> evaluate_on_gpu(const TsdfSnapshot& map, const Region& region
 
 }  // namespace
 
+Result<std::unique_ptr<SurfaceDevice>> surface_device_on(ViewBackend backend, const TsdfConfig& config) {
+  std::unique_ptr<SurfaceDevice> device;
+  if (backend == ViewBackend::cpu) return device;
+  Result<GpuMap> gpu = GpuMap::create(config);
+  if (!gpu.ok()) {
+    if (backend == ViewBackend::cuda) return gpu.error();
+    return device;
+  }
+  device = std::make_unique<GpuMap>(std::move(gpu).value());
+  return device;
+}
+
 Result<GainResult> evaluate_views_on(ViewBackend backend, const TsdfSnapshot& map, const Region& region,
                                      std::span<const Pose> T_world_camera, const GainConfig& config,
                                      const Executor& executor, const Progress& progress) {

@@ -3,10 +3,12 @@
 // ViewBackend: where a command evaluates views.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "saccade/core/names.hpp"
 #include "saccade/core/progress.hpp"
+#include "saccade/views/surface_device.hpp"
 #include "saccade/views/view_gain.hpp"
 
 namespace saccade::cli {
@@ -18,6 +20,10 @@ enum class ViewBackend : std::uint8_t {
 };
 inline constexpr auto kViewBackendNames =
     make_names<ViewBackend>({{ViewBackend::automatic, "auto"}, {ViewBackend::cpu, "cpu"}, {ViewBackend::cuda, "cuda"}});
+
+/// Opens the GPU for the expected surface of a map with this configuration; null: the CPU computes it. Answers
+/// unavailable, with the reason, where the GPU was asked for and none is there.
+[[nodiscard]] Result<std::unique_ptr<SurfaceDevice>> surface_device_on(ViewBackend backend, const TsdfConfig& config);
 
 /// Computes the gains of saccade::evaluate_views. Errors are those of the back end that was asked for.
 [[nodiscard]] Result<GainResult> evaluate_views_on(ViewBackend backend, const TsdfSnapshot& map, const Region& region,

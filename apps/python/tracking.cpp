@@ -18,6 +18,8 @@ py::dict track_dict(const FrameReport& report, bool fused) {
   result["inlier_share"] = report.icp.inlier_share;
   result["agreement"] = report.icp.agreement;
   result["iterations"] = report.icp.iterations;
+  result["confidence"] = report.confidence ? py::object{py::float_{*report.confidence}} : py::none();
+  result["relocalised"] = report.relocalised;
   return result;
 }
 
@@ -39,7 +41,7 @@ class Tracker {
     if (color) frame.color = to_color(*color);
     std::optional<Pose> hint;
     if (T_hint) hint = to_pose(*T_hint);
-    if (mode_ != TrackingMode::icp && !hint) {
+    if (needs_pose(mode_) && !hint) {
       throw py::value_error{"mode " + std::string{to_string(mode_)} + " needs T_hint for every frame"};
     }
     auto& map = map_.cast<SharedMap&>();
@@ -49,6 +51,7 @@ class Tracker {
       if (!fuse || found.status == FrameReport::Status::lost) return found;
       const ColorImage* colors = frame.color ? &*frame.color : nullptr;
       SACCADE_TRY(found.fusion, content.integrate(camera_, frame.depth, found.T_world_camera, map.executor(), colors));
+      if (mode_ == TrackingMode::rgbd) rgbd_.fused(frame, camera_, found.T_world_camera, map.executor());
       return found;
     }));
     if (fuse && report.status == FrameReport::Status::fused) T_world_last_ = report.T_world_camera;
@@ -56,13 +59,20 @@ class Tracker {
   }
 
   [[nodiscard]] py::object pose() const { return T_world_last_ ? py::object{from_pose(*T_world_last_)} : py::none(); }
-  void set_pose(const py::array& T_world_camera) { T_world_last_ = to_pose(T_world_camera); }
+  void set_pose(const py::array& T_world_camera) {
+    T_world_last_ = to_pose(T_world_camera);
+    rgbd_.moved_to(*T_world_last_);
+  }
 
  private:
-  /// Finds the pose of a frame: the hint itself, or the result of ICP from hint or last pose. An empty map has nothing
-  /// to align to: the first frame defines the world.
+  /// Finds the pose of a frame: the hint itself, or the result of ICP from hint or last pose, or of RgbdTracker. An
+  /// empty map has nothing to align to: the first frame defines the world.
   [[nodiscard]] Result<FrameReport> find(const TsdfSnapshot& map, const Frame& frame, const std::optional<Pose>& hint,
-                                         const Pose& last, const Executor& executor) const {
+                                         const Pose& last, const Executor& executor) {
+    if (mode_ == TrackingMode::rgbd && !map.grid.empty()) {
+      if (!T_world_last_) rgbd_.moved_to(last);
+      return rgbd_.track(surface_of_map(map, camera_, executor), frame, camera_, executor);
+    }
     if (mode_ != TrackingMode::forced && !map.grid.empty()) {
       return track_frame(map, frame, camera_, mode_ == TrackingMode::hint ? *hint : last, executor);
     }
@@ -75,6 +85,7 @@ class Tracker {
   PinholeCamera camera_;
   TrackingMode mode_{TrackingMode::icp};
   std::optional<Pose> T_world_last_;
+  RgbdTracker rgbd_;  ///< used in mode rgbd
 };
 
 }  // namespace
@@ -84,17 +95,19 @@ void bind_tracking(py::module_& module) {
       module, "Tracker",
       "Tracks a camera against a TsdfMap (thesis 2.2.1), and fuses its frames into it. Methods return a "
       "dict: accepted, T_world_camera (4 x 4), why (where the track is lost), fused; and of ICP rmse_m "
-      "(of point-to-plane distances, metres), inlier_share, agreement, iterations (0 where none ran).")
+      "(of point-to-plane distances, metres), inlier_share, agreement, iterations (0 where none ran); confidence (0 to "
+      "1, or "
+      "None) and relocalised.")
       .def(py::init<py::object, const PinholeCamera&, const std::string&>(), py::arg("map"), py::arg("camera"),
            py::arg("mode") = "icp",
-           "`mode`: icp (from the last pose; `T_hint` is that of the first frame, else the identity), hint (ICP from "
+           "`mode`: icp (from the last pose; `T_hint` is that of the first frame, else the identity), rgbd (as icp, "
+           "with the colours of fused frames and from the last motion), hint (ICP from "
            "`T_hint`) or forced (`T_hint` as it is).")
       .def(
           "track",
-          [](Tracker& tracker, const py::array& depth, const std::optional<py::array>& T_hint) {
-            return tracker.process(depth, T_hint, std::nullopt, false);
-          },
-          py::arg("depth"), py::arg("T_hint") = py::none(),
+          [](Tracker& tracker, const py::array& depth, const std::optional<py::array>& T_hint,
+             const std::optional<py::array>& color) { return tracker.process(depth, T_hint, color, false); },
+          py::arg("depth"), py::arg("T_hint") = py::none(), py::arg("color") = py::none(),
           "Finds where a depth image, H x W as of TsdfMap.integrate, was taken; map and last pose stay.")
       .def(
           "fuse",

@@ -18,8 +18,8 @@ struct TableOptions {
   std::size_t frames{0};         ///< frames of the scan of Table 2.1 and of each scene of surfels; 0: all
   std::string surfel_scene;      ///< the only scene of surfels; empty: all
   std::size_t placements{16};    ///< places of the grid of SV-LCCP's seeds
-  /// Leaves out what Saccade adds: the updates of Tables 2.7 and 2.8 (docs/guides/update.md), and the mode filter of
-  /// Tables 4.1, 4.3 and their figures (decision 18).
+  /// Leaves out what Saccade adds: the updates of Tables 2.7 and 2.8 (docs/guides/update.md), and mode filter and
+  /// segmentation of Tables 4.1 to 4.3 and their figures (decision 41).
   bool as_printed{false};
   bool quick{false};  ///< numbers that were not given are reduced: see quick_options
   bool draws{false};  ///< plots and pictures are made, too

@@ -226,8 +226,11 @@ constexpr std::array kTables{
                .cost = {257.0, 12.0},
                .experiment = "surfels",
                .has_printed = true},
-    TableEntry{
-        .number = "4.2", .title = "parameters of surfels and mode filter", .reproduce = table_4_2, .cost = {0.1, 0.1}},
+    TableEntry{.number = "4.2",
+               .title = "parameters of surfels and mode filter",
+               .reproduce = table_4_2,
+               .cost = {0.1, 0.1},
+               .has_printed = true},
     TableEntry{.number = "4.3",
                .title = "errors of segmented surfels, with and without the mode filter",
                .reproduce = table_4_3,

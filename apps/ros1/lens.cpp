@@ -17,16 +17,15 @@ Distortion distortion_of(const CalibratedCamera& camera) {
   if (std::any_of(D.begin(), D.end(), [](double d) { return !std::isfinite(d); })) {
     throw std::runtime_error{"camera_info has a coefficient of distortion that is not a number"};
   }
-  const auto beyond = D.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(D.size(), 5));
-  const bool zero = std::all_of(D.begin(), D.end(), [](double d) { return d == 0.0; });
-  const bool brown = std::all_of(beyond, D.end(), [](double d) { return d == 0.0; });
-  if (!zero && (!brown || (camera.model != "plumb_bob" && camera.model != "rational_polynomial"))) {
-    throw std::runtime_error{"camera_info has the distortion model '" + camera.model +
-                             "', of which nothing but plumb_bob is understood; name the rectified topic "
-                             "(image_rect), as image_proc makes it"};
+  const bool is_zero = std::all_of(D.begin(), D.end(), [](double d) { return d == 0.0; });
+  const auto lens = Distortion::from_coefficients(D);
+  if (!is_zero && (!lens || (camera.model != "plumb_bob" && camera.model != "rational_polynomial"))) {
+    throw std::runtime_error{"camera_info has the distortion model '" + camera.model + "' with " +
+                             std::to_string(D.size()) +
+                             " coefficients; plumb_bob and rational_polynomial with up to 8 are understood; name the "
+                             "rectified topic (image_rect), as image_proc makes it"};
   }
-  const auto at = [&D](std::size_t i) { return i < D.size() ? D[i] : 0.0; };
-  return {at(0), at(1), at(2), at(3), at(4)};
+  return is_zero ? Distortion{} : *lens;
 }
 
 }  // namespace

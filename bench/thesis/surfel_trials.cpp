@@ -126,32 +126,41 @@ PointCloud with_true_colors(PointCloud cloud, const PointCloud& enhanced, const 
   return cloud;
 }
 
-SupervoxelConfig thesis_supervoxels() {
-  SupervoxelConfig growing = SvLccpConfig{}.supervoxels;
+/// With the sizes and weights of Table 4.2.
+SvLccpConfig thesis_sv_lccp(SvLccpConfig config) {
+  SupervoxelConfig& growing = config.supervoxels;
   growing.voxels.voxel_size_m = kVoxel_m;
   growing.seed_spacing_m = kSupervoxel_m;
   growing.spatial_weight = kPositionWeight;
   growing.normal_weight = kNormalWeight;
   growing.color_weight = kColorWeight;
-  return growing;
+  return config;
+}
+
+FloodFillConfig thesis_flood_fill(FloodFillConfig config) {
+  config.color_weight = kColorWeight;
+  config.normal_weight = kNormalWeight;
+  return config;
 }
 
 /// With the grid of seeds moved along its diagonal by a share of its spacing.
-Result<ScoreCurve> sv_lccp_curve_at(PointCloud cloud, double share, const SegmentationTruth& truth,
-                                    const std::vector<double>& thresholds, const Progress& progress) {
+Result<ScoreCurve> sv_lccp_curve_at(PointCloud cloud, double share, const SvLccpConfig& config,
+                                    const SegmentationTruth& truth, const std::vector<double>& thresholds,
+                                    const Progress& progress) {
   const auto step_m = static_cast<float>(share * kSupervoxel_m);
   for (Eigen::Vector3f& position_m : cloud.positions_m) position_m.array() += step_m;
   const Executor here;
-  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, thesis_supervoxels(), here));
-  return sv_lccp_curve(supervoxels, truth, thresholds, {}, here, progress);
+  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, config.supervoxels, here));
+  return sv_lccp_curve(supervoxels, truth, thresholds, config.lccp, here, progress);
 }
 
 /// Where the grid of seeds lies is chance, and with it by how much a supervoxel joins two things: the greatest F of one
 /// place and another differ by 0.006 to 0.009 (standard deviation, magazines-2). So the figures of several places are
 /// taken together.
-Result<ScoreCurve> sv_lccp_curve_of_placements(const PointCloud& cloud, const SegmentationTruth& truth,
-                                               const std::vector<double>& thresholds, std::size_t placements,
-                                               const Executor& executor, const Progress& progress) {
+Result<ScoreCurve> sv_lccp_curve_of_placements(const PointCloud& cloud, const SvLccpConfig& config,
+                                               const SegmentationTruth& truth, const std::vector<double>& thresholds,
+                                               std::size_t placements, const Executor& executor,
+                                               const Progress& progress) {
   const auto count = static_cast<double>(placements);
   std::vector<Result<ScoreCurve>> curves(placements, ScoreCurve{});
   std::mutex reporting;
@@ -161,7 +170,7 @@ Result<ScoreCurve> sv_lccp_curve_of_placements(const PointCloud& cloud, const Se
       Progress followed{[&followed, &progress](auto&&...) {
         if (progress.cancelled()) followed.request_cancel();
       }};
-      curves[i] = sv_lccp_curve_at(cloud, double(i) / count, truth, thresholds, followed);
+      curves[i] = sv_lccp_curve_at(cloud, double(i) / count, config, truth, thresholds, followed);
       const std::lock_guard lock{reporting};
       progress.report("SV-LCCP", ++done, placements);
     }
@@ -193,10 +202,11 @@ Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelCo
   truths.matching.tolerance_m = kEvaluation_m;
   truths.split = false;  // it is already
   SACCADE_TRY(const SegmentationTruth truth, SegmentationTruth::create(cloud, segments.labels, truths, executor));
-  const FloodFillConfig filling{kColorWeight, kNormalWeight, 0.0};
   const auto of = static_cast<std::size_t>(colors);
-  SACCADE_TRY(trial.flood_fill[of], flood_fill_curve(cloud, truth, thresholds, filling, executor, progress));
-  SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve_of_placements(cloud, truth, thresholds, placements, executor, progress));
+  SACCADE_TRY(trial.flood_fill[of],
+              flood_fill_curve(cloud, truth, thresholds, trial.flood_fill_config, executor, progress));
+  SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve_of_placements(cloud, trial.sv_lccp_config, truth, thresholds, placements,
+                                                             executor, progress));
   return {};
 }
 
@@ -220,6 +230,8 @@ Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTr
   SACCADE_TRY(const RayScene rays, RayScene::build(scene.scene));
   SurfelTrial trial;
   trial.scene = name;
+  trial.flood_fill_config = thesis_flood_fill(config.flood_fill);
+  trial.sv_lccp_config = thesis_sv_lccp(config.sv_lccp);
   trial.frames = config.frames == 0 ? scene.frames : config.frames;
   SACCADE_TRY(RenderedSequence sequence, begin_sequence(scene, rays, trial.frames, config, executor));
   const bool is_vignetted = scene.color.vignetting == Vignetting::on;
@@ -254,12 +266,13 @@ Result<BestSegments> best_segments(const SurfelTrial& trial, bool by_flood_fill,
   if (!best) return Error{Errc::not_found, "the curve has no points", trial.scene};
   BestSegments segments{best->threshold, best->score.bce, {}, 0};
   if (by_flood_fill) {
-    SACCADE_TRY(SurfelComponents found, flood_fill(cloud, {kColorWeight, kNormalWeight, best->threshold}, executor));
+    FloodFillConfig config = trial.flood_fill_config;
+    config.threshold = best->threshold;
+    SACCADE_TRY(SurfelComponents found, flood_fill(cloud, config, executor));
     segments.labels = std::move(found.labels);
     segments.count = found.count;
   } else {
-    SvLccpConfig config;
-    config.supervoxels = thesis_supervoxels();
+    SvLccpConfig config = trial.sv_lccp_config;
     config.max_color_difference = best->threshold;
     SACCADE_TRY(SvLccpResult found, segment_by_sv_lccp(cloud, config, executor));
     segments.labels = std::move(found.segments.labels);

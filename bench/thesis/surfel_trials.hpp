@@ -11,6 +11,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/core/progress.hpp"
 #include "saccade/scene/rendered_sequence.hpp"
+#include "saccade/segment/lccp.hpp"
 #include "saccade/segment/score_curve.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 
@@ -24,9 +25,11 @@ struct SurfelTrialConfig {
   std::optional<bool> automatic_gain{};  ///< none: as in the scene
   bool exposure_compensation{false};
   ModeFilterConfig mode_filter{};
-  std::size_t placements{16};   ///< placements of the grid of SV-LCCP's seeds; its results are pooled over all
-  bool places_of_modes{false};  ///< positions of the modes; false: positions of the averages (decision 20)
-  double min_weight{10.0};      ///< surfels with a smaller weight w_s are ignored; scaled with the number of frames
+  std::size_t placements{16};    ///< placements of the grid of SV-LCCP's seeds; its results are pooled over all
+  bool places_of_modes{false};   ///< positions of the modes; false: positions of the averages (decision 20)
+  FloodFillConfig flood_fill{};  ///< weights of Table 4.2 are set, whatever they are
+  SvLccpConfig sv_lccp{};        ///< sizes and weights of Table 4.2 are set, whatever they are
+  double min_weight{10.0};       ///< surfels with a smaller weight w_s are ignored; scaled with the number of frames
 };
 
 /// Not enhanced, enhanced, and as a yardstick: surfels that are not enhanced but for their colours, each that of the
@@ -44,7 +47,9 @@ struct SurfelTrial {
   std::vector<double> found_gains;       ///< by exposure compensation
   std::array<ScoreCurve, 3> flood_fill;  ///< by SurfelColors
   std::array<ScoreCurve, 3> sv_lccp;
-  std::array<PointCloud, 2> clouds;  ///< by SurfelColors; the same surfels, of the thesis' two
+  FloodFillConfig flood_fill_config;  ///< as used
+  SvLccpConfig sv_lccp_config;        ///< as used
+  std::array<PointCloud, 2> clouds;   ///< by SurfelColors; the same surfels, of the thesis' two
 
   std::vector<Eigen::Vector3f> mode_positions_m;  ///< positions of the modes of these surfels
   std::vector<std::uint32_t> true_segments;       ///< true segment of each surfel; kUnlabelled: none

@@ -74,6 +74,31 @@ TEST_F(AnnotationServiceTest, GivesPointsAsTheyAreInTheFile) {
   }
 }
 
+TEST_F(AnnotationServiceTest, AcceptsWholeSegments) {
+  std::string numbers;
+  for (std::uint32_t point = 0; point < kPoints; ++point) numbers += point / kColumns < 50 ? "1\n" : "7\n";
+  folder_.write("segments.txt", numbers);
+  config_.clouds[0].segments = folder_ / "segments.txt";
+  start();
+  Page page = this->page(1);
+  const Received segments = page.ask({{"type", "segments"}, {"from", 0}, {"count", 100}});
+  ASSERT_EQ(segments.head.at("count"), 100);
+  const auto points = segments.array<std::uint32_t>(0, 100);
+  const auto of_points = segments.array<std::uint32_t>(400, 100);
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(of_points[i], points[i] / kColumns < 50 ? 1U : 7U);
+  const json accept{{"do", "paint"}, {"label", 4}, {"points", {60 * kColumns}}, {"segments", true}};
+  EXPECT_TRUE(page.act(accept).ok());
+  EXPECT_EQ(page.labelled_as(4), 6000U) << "without the point that is not finite";
+  EXPECT_EQ(page.act({{"do", "undo"}}).head.at("client_actions"), 2) << "one action";
+  EXPECT_EQ(page.labelled_as(4), 0U);
+  config_.clouds[0].segments.clear();
+  start();
+  Page other = this->page(2);
+  EXPECT_EQ(other.open().head.at("cloud").at("has_segments"), false);
+  EXPECT_EQ(other.ask({{"type", "segments"}, {"from", 0}, {"count", 1}}).error(), "not found");
+  EXPECT_EQ(other.act(accept).error(), "invalid argument");
+}
+
 /// All of the cloud, from the origin.
 json view() {
   return {{"size", {400, 300}},

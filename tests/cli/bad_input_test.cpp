@@ -174,10 +174,10 @@ TEST_F(BadInput, SizesOfZeroAndLess) {
   }
   expect_refused(2, {"--intrinsics", "positive"}, {"--intrinsics", "0,131,79.5,59.5"});
   expect_refused(2, {"--workspace"}, {"--workspace", "0,0,0,1,1,0"});
-  expect_refused(2, {"--tracking", "icp, hint or forced"}, {"--tracking", "guess"});
+  expect_refused(2, {"--tracking", "icp, rgbd, hint or forced"}, {"--tracking", "guess"});
   expect_refused(2, {"--mask"}, {"--mask", "0,0;1,1"});
   expect_refused(2, {"--continue"}, {"--continue", "any.sacmap"});
-  expect_refused(2, {"--distortion", "5 numbers"}, {"--distortion", "0.1,0.2"});
+  expect_refused(2, {"--distortion", "4 to 8 numbers"}, {"--distortion", "0.1,0.2"});
 }
 
 TEST_F(BadInput, NoDepthWithinTheRange) {

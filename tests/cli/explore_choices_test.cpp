@@ -49,6 +49,17 @@ TEST(ExploreChoices, WhatIsLookedAheadChangesWhatIsChosenAndFramesOnTheWayAreFus
   EXPECT_NE(gains_alone.json().at("result").at("views"), result.at("views"));
 }
 
+TEST(ExploreChoices, AMissingGpuIsSaidWhereItWasAskedFor) {
+  const nlohmann::json info = run_program({"info", "--json", "-"}).json().at("result");
+  if (info.at("backends").at("cuda")) GTEST_SKIP() << "there is a GPU";
+  const TempFolder folder;
+  const std::string why = info.at("cuda").at("absent_because");
+  const Arguments options{"--max-views", "1", "--no-pictures", "--backend"};
+  expect_failure(explore(tiny_cell_file(), folder / "x", options + Arguments{"cuda"}), 4, "explore", {why});
+  if (kSanitized) return;
+  EXPECT_EQ(explore(tiny_cell_file(), folder / "y", options + Arguments{"auto"}).status, 0);
+}
+
 TEST(ExploreChoices, AMeshInMillimetresIsScaledOntoTheTable) {
   const TempFolder folder;
   const std::string mesh = folder

@@ -10,6 +10,7 @@
 #include "saccade/sensor/kinect_v2_filter.hpp"
 #include "saccade/sensor/mask.hpp"
 #include "saccade/sensor/noise.hpp"
+#include "support/depth_files.hpp"
 
 namespace saccade::test {
 namespace {
@@ -140,9 +141,6 @@ TEST_F(Filter, NeverReplacesAFrameByAnotherName) {
   expect_failure(
       run_program({"filter", (folder_ / "links").string(), "--out", frames().string(), "--quiet", "--force"}), 3,
       "filter", {"would replace the frames"});
-  fs::copy_file(frame(0), folder_ / "filter.json");
-  expect_failure(run_program({"filter", (folder_ / "filter.json").string(), "--out", out().string(), "--quiet"}), 3,
-                 "filter", {"filter.json", "another one"});
 }
 
 TEST_F(Filter, LeavesNothingOfAnEarlierRun) {
@@ -174,6 +172,30 @@ TEST_F(Filter, LeavesOutWhatIsNoDepthImage) {
   EXPECT_FALSE(fs::exists(folder_ / "alone"));
 }
 
+TEST_F(Filter, TakesDepthInOtherFormats) {
+  ASSERT_EQ(run_program(filter()).status, 0);
+  const Image16 expected = read_png16(out() / name(0)).value();
+  const Image16 samples = read_png16(frame(0)).value();
+  std::vector<float> metres;
+  std::string big_endian;
+  for (const std::uint16_t sample : samples.pixels()) {
+    metres.push_back(static_cast<float>(sample) / 1000.0F);
+    big_endian += {static_cast<char>(sample >> 8U), static_cast<char>(sample & 255U)};
+  }
+  const fs::path others = folder_ / "others";
+  fs::create_directories(others);
+  std::ofstream{others / "a.tif"} << make_tiff(512, 424, 32, 3, bytes_of_values(metres));
+  std::ofstream{others / "b.npy"} << make_npy("<f4", "(424, 512)", bytes_of_values(metres));
+  std::ofstream{others / "c.pgm"} << "P5 512 424 65535\n" << big_endian;
+  const Arguments all{"filter", others.string(), "--out", out().string(), "--quiet", "--no-pictures", "--force"};
+  ASSERT_EQ(run_program(all).status, 0);
+  EXPECT_EQ(names_in(out()),
+            (std::vector<std::string>{"a.png", "b.png", "c.png", "filter.json", "pictures", "report.html"}));
+  for (const char* file : {"a.png", "b.png", "c.png"}) EXPECT_EQ(read_png16(out() / file).value(), expected) << file;
+  fs::copy_file(others / "b.npy", others / "a.npy");
+  expect_failure(run_program(all), 3, "filter", {"two of the frames have this name", "a.png"});
+}
+
 TEST_F(Filter, TakesImagesOfAnySizeWithIntrinsics) {
   ASSERT_TRUE(write_png16(folder_ / "small.png", Image16{320, 240, 65535}));
   Image16 samples{320, 240, 1000};
@@ -199,7 +221,7 @@ TEST_F(Filter, NeverReplacesItsInput) {
 TEST_F(Filter, SaysWhenThereIsNothingToFilter) {
   fs::create_directories(folder_ / "empty");
   expect_failure(run_program({"filter", (folder_ / "empty").string(), "--out", out().string()}), 3, "filter",
-                 {"no PNG files"});
+                 {"no depth images"});
   ASSERT_TRUE(write_png16(folder_ / "dark.png", Image16{512, 424}));
   expect_failure(run_program({"filter", (folder_ / "dark.png").string(), "--out", out().string(), "--quiet"}), 5,
                  "filter", {"--depth-scale"});

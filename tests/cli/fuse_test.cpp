@@ -262,6 +262,28 @@ TEST(FuseRecorded, FiveFramesOfALivingRoom) {
   }
 }
 
+TEST(FuseRecorded, ColorsLaidOnTheDepthsTrackTheKitchen) {
+  const fs::path data = shared_data() / "rgbd_redkitchen";
+  if (!fs::exists(data)) GTEST_SKIP() << data << " is not there";
+  if (kSanitized) GTEST_SKIP() << "tracking by colours takes minutes with sanitizers; release does it";
+  const TempFolder folder;
+  const auto residual_m = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"fuse",         data.string(),
+                                       "--tracking",   "rgbd",
+                                       "--out",        (folder / "run").string(),
+                                       "--force",      "--quiet",
+                                       "--no-mesh",    "--no-pictures",
+                                       "--count",      "40",
+                                       "--voxel-size", "0.012",
+                                       "--json",       "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.json().at("result").at("depth_residual_m").at("median").get<double>();
+  };
+  EXPECT_LT(residual_m({"--color-camera", "525,525,320,240", "--color-at", "0.025,0,0"}), residual_m({}));
+}
+
 TEST(FuseRecorded, KitchenFitsItsMapWithinEightMillimetres) {
   const fs::path data = shared_data() / "rgbd_redkitchen";
   if (!fs::exists(data)) GTEST_SKIP() << data << " is not there";

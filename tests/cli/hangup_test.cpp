@@ -68,11 +68,11 @@ class Hangup : public ::testing::TestWithParam<LongCommand> {
     }
     return folder.string();
   }
-  /// A plane of a quarter of a million points.
+  /// A plane of a million points.
   [[nodiscard]] std::string cloud() const {
     const fs::path file = folder_ / "plane.xyz";
     std::ofstream text{file};
-    for (int i = 0; i < 250'000; ++i) text << 0.002 * (i % 500) << ' ' << 0.002 * (i / 500) << " 0\n";
+    for (int i = 0; i < 1'000'000; ++i) text << 0.001 * (i % 1000) << ' ' << 0.001 * (i / 1000) << " 0\n";
     return file.string();
   }
   TempFolder folder_;

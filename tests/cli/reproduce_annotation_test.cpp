@@ -48,7 +48,7 @@ TEST_F(ReproduceAnnotation, StandsBesideTheUserStudy) {
   EXPECT_NEAR(study_row(tables.at(1), "people", "rectangles").at("errors_per_100k").get<double>(), 3480.1, 0.1);
   for (const nlohmann::json& table : tables) {
     EXPECT_EQ(table.at("clouds"), 2);
-    EXPECT_EQ(table.at("rows").size(), 2U + 2U * 4U);
+    EXPECT_EQ(table.at("rows").size(), 2U + 2U * 5U);
     EXPECT_NE(table.at("notes").at(0).get<std::string>().find("No person annotates here"), std::string::npos);
     for (const nlohmann::json& row : table.at("rows")) {
       if (row.at("annotator") == "people") continue;

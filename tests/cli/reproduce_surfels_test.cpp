@@ -20,8 +20,17 @@ json tables_of(const Outcome& outcome) {
 
 TEST(ReproduceSurfels, ParametersStandBesideTheThesis) {
   const json table = tables_of(run_program({"reproduce", "4.2", "--quiet", "--json", "-"})).at(0);
-  ASSERT_EQ(table.at("rows").size(), 9U);
+  ASSERT_EQ(table.at("rows").size(), 14U);
   for (const json& row : table.at("rows")) EXPECT_EQ(row.at("thesis"), row.at("here")) << row;
+  EXPECT_FALSE(table.contains("switches"));
+}
+
+/// Numbers are the thesis' either way; what it says in words is another with every switch.
+TEST(ReproduceSurfels, ParametersAsPrintedNameEverySwitch) {
+  const json table = tables_of(run_program({"reproduce", "4.2", "--as-printed", "--quiet", "--json", "-"})).at(0);
+  for (const json& row : table.at("rows")) EXPECT_EQ(row.at("thesis"), row.at("here")) << row;
+  ASSERT_EQ(table.at("switches").size(), 13U);
+  for (const json& row : table.at("switches")) EXPECT_NE(row.at("as_printed"), row.at("default")) << row;
 }
 
 void expect_curve(const json& curve) {
@@ -114,6 +123,10 @@ TEST(ReproduceSurfels, OneSceneAloneAsPrintedOrNot) {
   };
   EXPECT_EQ(curve(ours, "not_enhanced"), curve(printed, "not_enhanced"));
   EXPECT_NE(curve(ours, "enhanced"), curve(printed, "enhanced"));
+  const auto by_supervoxels = [](const json& tables) {
+    return tables.at(1).at("rows").at(0).at("sv_lccp").at("not_enhanced");
+  };
+  EXPECT_NE(by_supervoxels(ours), by_supervoxels(printed)) << "PCL's rules";
   expect_failure(run_program({"reproduce", "4.1", "--scene", "table"}), 2, "reproduce", {"--scene", "workshop-1"});
 }
 

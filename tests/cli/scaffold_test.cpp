@@ -36,7 +36,7 @@ TEST(Scaffold, SuggestsTheNearestCommandOptionAndChoice) {
   const Arguments compare{"compare", "--scenes", "tabletop-1", "--out", "X"};
   expect_usage(compare + Arguments{"--strategies", "sphere,atention"}, "; did you mean attention?");
   expect_usage(compare + Arguments{"--noise", "kinect-v"}, "; did you mean kinect-v1?");
-  expect_usage({"scene"}, "name what to do: export, list, render or sequence (see saccade scene --help)");
+  expect_usage({"scene"}, "name what to do: export, list, render, scan or sequence (see saccade scene --help)");
 }
 
 TEST(Scaffold, HelpSaysRangesAndDefaultsInWords) {

@@ -64,7 +64,7 @@ TEST(SceneCommand, RefusesWhatItCannotDo) {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   };
-  refused({"scene"}, 2, "name what to do: export, list, render or sequence");
+  refused({"scene"}, 2, "name what to do: export, list, render, scan or sequence");
   refused({"scene", "render", "atrium", "--out", out}, 3, "atrium: no such scene; there are bottle");
   refused({"scene", "render", "jug"}, 2, "--out");
   refused({"scene", "render", "jug", "--out", out, "--image-size", "0,5"}, 2, "--image-size");

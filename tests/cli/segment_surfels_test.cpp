@@ -54,6 +54,23 @@ class SegmentSurfels : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(SegmentSurfels, AsPrintedIsWhatNoOptionSaysOtherwise) {
+  const nlohmann::json ours = result_of({"--method", "sv-lccp"});
+  EXPECT_EQ(ours.at("as_printed"), false);
+  EXPECT_EQ(ours.at("parameters").at("rounds"), 5);
+  EXPECT_EQ(ours.at("parameters").at("sanity"), true);
+  const nlohmann::json printed = result_of({"--method", "sv-lccp", "--as-printed"});
+  EXPECT_EQ(printed.at("as_printed"), true);
+  EXPECT_EQ(printed.at("parameters").at("rounds"), 1);
+  EXPECT_EQ(printed.at("parameters").at("sanity"), false);
+  const nlohmann::json named = result_of({"--method", "sv-lccp", "--as-printed", "--rounds", "3", "--sanity"});
+  EXPECT_EQ(named.at("parameters").at("rounds"), 3);
+  EXPECT_EQ(named.at("parameters").at("sanity"), true);
+  EXPECT_EQ(result_of({"--method", "flood-fill", "--as-printed"}).at("found"), 3) << "all its normals are known";
+  expect_failure(run_program({"segment", cloud().string(), "--as-printed", "--quiet"}), 2, "segment",
+                 {"--as-printed", "--method sv-lccp"});
+}
+
 TEST_F(SegmentSurfels, FloodFillFindsWhatTouchesAndLooksAlike) {
   const nlohmann::json result =
       result_of({"--method", "flood-fill", "--out", out().string(), "--picture", (folder_ / "a.png").string()});

@@ -295,6 +295,24 @@ TEST_F(Surfels, WhatIsWrongIsSaidBeforeTheWork) {
   EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"frames"});
 }
 
+TEST_F(Surfels, AsPrintedIsEveryStepOfTheThesis) {
+  const nlohmann::json printed = result("printed.ply", {"--as-printed"});
+  EXPECT_EQ(printed.at("as_printed"), true);
+  EXPECT_EQ(printed.at("choice"), "heaviest");
+  EXPECT_EQ(printed.at("places"), "modes");
+  EXPECT_EQ(
+      result("named.ply", {"--choice", "heaviest", "--places", "modes", "--max-depth-change", "inf"}).at("as_printed"),
+      false);
+  EXPECT_TRUE(text_of(folder_ / "printed.ply") == text_of(folder_ / "named.ply"));
+  for (const Arguments& departure :
+       {Arguments{"--choice", "densest"}, Arguments{"--places", "average"}, Arguments{"--max-depth-change", "0.001"}}) {
+    EXPECT_EQ(result("other.ply", Arguments{"--as-printed"} + departure).at("frames"), 12);
+    EXPECT_FALSE(text_of(folder_ / "other.ply") == text_of(folder_ / "printed.ply")) << departure.front();
+  }
+  expect_failure(run_program(surfels("cloud.ply", {"--as-printed", "--mode-filter", "off"})), 2, "surfels",
+                 {"--as-printed", "--mode-filter off"});
+}
+
 TEST_F(Surfels, WhatWouldHaveNoEffectIsRefused) {
   for (const Arguments& option :
        {Arguments{"--max-modes", "4"}, Arguments{"--choice", "densest"}, Arguments{"--places", "average"}}) {

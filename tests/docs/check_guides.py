@@ -15,7 +15,7 @@ DEBIAN = {  # packages of CMake → those of Debian
     "ImageCodecs": ["libpng-dev", "libtiff-dev", "libturbojpeg0-dev"], "assimp": ["libassimp-dev"], "zstd": ["libzstd-dev"],
     "orocos_kdl": ["liborocos-kdl-dev"], "OMPL": ["libompl-dev"], "urdfdom": ["liburdfdom-dev"],
     "embree": ["libembree-dev"], "Freetype": ["libfreetype-dev", "fonts-dejavu-core"],
-    "OpenEXR": ["libopenexr-dev"]}
+    "OpenEXR": ["libopenexr-dev"], "Ceres": ["libceres-dev"]}
 MIN_COMMANDS = 60
 
 

@@ -159,6 +159,7 @@ TEST(Defaults, OfSegmentationAreDocumented) {
                     {supervoxels.spatial_weight, supervoxels.normal_weight, supervoxels.color_weight});
   expect_documented("SupervoxelConfig::rounds", {static_cast<double>(supervoxels.rounds)});
   expect_documented("SupervoxelConfig::min_seed_share", {supervoxels.min_seed_share});
+  expect_documented("SupervoxelConfig::reach", {supervoxels.reach});
   const MapSegmentsConfig map;
   expect_documented("MapSegmentsConfig::voxel_size_m", {map.voxel_size_m});
   EXPECT_EQ(map.spatial_weight, supervoxels.spatial_weight);

@@ -24,6 +24,7 @@ TABLE = {
     "io/messages": ["io/files"],
     "io/bags": ["io/files", "io/frames", "io/messages", "sensor"],
     "tracking": ["sensor", "map", "surfel"],
+    "loops": ["map", "tracking"],
     "segment": ["cloud", "map", "surfel"],
     "attention": ["cloud", "map", "segment"],
     "views": ["map", "attention"],
@@ -54,7 +55,7 @@ ALLOWED = {room: closure(room) for room in TABLE}
 # Rooms that embed the loop: they need only the libraries below.
 CORE_ROOMS = {"core", "sensor", "cloud", "map", "tracking", "surfel", "segment", "attention", "views", "robot", "explore",
               "annotate"}
-CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "zstd.h", "malloc.h"}  # first part of the path in <…>
+CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "zstd.h", "malloc.h", "fcntl.h", "sys", "unistd.h"}  # first part of the path in <…>
 CORE_PACKAGES = {"Eigen3", "TBB", "HWY", "hwy", "zstd"}
 
 MAX_LINES = 400

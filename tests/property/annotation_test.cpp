@@ -19,6 +19,7 @@ struct PlainState {
   std::map<std::uint32_t, ControlPoint> control_points;
   std::map<std::uint32_t, std::uint32_t> paint;
   std::map<std::uint32_t, LabelInfo> definitions;
+  std::vector<LockLabel> locks;  ///< that hold, the latest last
 
   void operator()(const SetControlPoints& set) {
     for (const std::uint32_t point : set.points) control_points[point] = {point, set.label, set.start_cost};
@@ -35,8 +36,15 @@ struct PlainState {
   void operator()(const PaintPoints& painted) {
     for (const std::uint32_t point : painted.points) paint[point] = painted.label;
   }
+  void operator()(const PaintLabels& painted) {
+    for (std::size_t i = 0; i < painted.points.size(); ++i) paint[painted.points[i]] = painted.labels[i];
+  }
   void operator()(const DefineLabels& define) {
     for (const NumberedLabel& label : define.labels) definitions[label.number] = label.info;
+  }
+  void operator()(const LockLabel& lock) {
+    std::erase_if(locks, [&](const LockLabel& earlier) { return earlier.label == lock.label; });
+    if (lock.locked) locks.push_back(lock);
   }
   void operator()(const ClearAnnotation& /*clear*/) {
     control_points.clear();
@@ -54,6 +62,9 @@ struct PlainState {
       if (const auto root = forest.root_of(point)) labels[point] = control_points.at(*root).label;
       const auto painted = paint.find(point);
       if (painted != paint.end() && painted->second != kNoLabel) labels[point] = painted->second;
+    }
+    for (const LockLabel& lock : locks) {
+      for (const std::uint32_t point : lock.points) labels[point] = lock.label;
     }
     return labels;
   }
@@ -126,6 +137,7 @@ TEST(AnnotationProperty, IsWhatTheActionsThatAreNotUndoneLeave) {
   int compared = 0;
   int undone = 0;
   int moved_on = 0;
+  int locked = 0;
   for (int run = 0; run < kAnnotationRuns; ++run) {
     SCOPED_TRACE("seed " + std::to_string(run));
     test::RandomActions random{static_cast<std::uint64_t>(run), 30};
@@ -142,6 +154,7 @@ TEST(AnnotationProperty, IsWhatTheActionsThatAreNotUndoneLeave) {
       ASSERT_NO_FATAL_FAILURE(expect_same(annotation, history.state(), forest));
       ++compared;
       undone += applied.done && std::holds_alternative<UndoAction>(actions.back().change) ? 1 : 0;
+      locked += std::holds_alternative<LockLabel>(actions.back().change) ? 1 : 0;
       moved_on += std::holds_alternative<MoveControlPoint>(actions.back().change) ? 1 : 0;
     }
     Annotation replayed{graph};
@@ -156,6 +169,7 @@ TEST(AnnotationProperty, IsWhatTheActionsThatAreNotUndoneLeave) {
   EXPECT_EQ(compared, kAnnotationRuns * kActionsPerRun);
   EXPECT_GT(undone, 10 * kAnnotationRuns);
   EXPECT_GT(moved_on, 5 * kAnnotationRuns);
+  EXPECT_GT(locked, kAnnotationRuns);
 }
 
 }  // namespace

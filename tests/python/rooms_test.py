@@ -267,7 +267,7 @@ class Tracking(unittest.TestCase):
             tracker.track(seen(true[0]))
         with self.assertRaisesRegex(ValueError, "size"):
             tracker.track(seen(true[0])[:60], true[0])
-        with self.assertRaisesRegex(ValueError, "icp, hint or forced"):
+        with self.assertRaisesRegex(ValueError, "icp, rgbd, hint or forced"):
             saccade.Tracker(maps["icp"], CAMERA, "magic")
         with self.assertRaisesRegex(TypeError, "TsdfMap"):
             saccade.Tracker(None, CAMERA)

@@ -77,6 +77,23 @@ class RandomActions {
     return there.empty() ? below(annotation.labels().size() - 1) : there[below(there.size())].point;
   }
 
+  /// Locks a label, or unlocks it where it is locked.
+  AnnotationChange lock(const Annotation& annotation) {
+    LockLabel lock{1 + below(4), true, {}};
+    lock.locked = !annotation.is_locked(lock.label);
+    for (std::uint32_t point = 0; lock.locked && point < annotation.labels().size(); ++point) {
+      if (annotation.label_of(point) == lock.label) lock.points.push_back(point);
+    }
+    return lock;
+  }
+
+  AnnotationChange paint_labels(const Annotation& annotation) {
+    PaintLabels paint{points(annotation, most_points_), {}};
+    std::sort(paint.points.begin(), paint.points.end());
+    for (std::size_t i = 0; i < paint.points.size(); ++i) paint.labels.push_back(1 + below(4));
+    return paint;
+  }
+
   AnnotationChange change(const Annotation& annotation) {
     const double max_path = annotation.forest().neighbourhood().config().max_path;
     const std::uint32_t kind = below(100);
@@ -92,6 +109,7 @@ class RandomActions {
       const std::uint32_t to = below(2) == 0 ? control_point(annotation) : below(annotation.labels().size() - 1);
       return MoveControlPoint{control_point(annotation), to};
     }
+    if (kind < 56) return paint_labels(annotation);
     if (kind < 62) return PaintPoints{points(annotation, most_points_), below(4)};
     if (kind < 67) {
       const std::uint32_t number = 1 + below(4);
@@ -99,7 +117,8 @@ class RandomActions {
       return DefineLabels{{{number, {"box " + std::to_string(below(9)), {level, 1, 2}, "box", below(3)}}}};
     }
     if (kind < 69) return ClearAnnotation{};
-    if (kind < 87) return UndoAction{};
+    if (kind < 73) return lock(annotation);
+    if (kind < 88) return UndoAction{};
     return RedoAction{};
   }
 

@@ -24,6 +24,7 @@ interface Waiting {
 export class Connection {
   state: ConnectionState = "connecting";
   hello: Hello | null = null;
+  name = ""; // as others see the person
 
   private socket: WebSocket | null = null;
   private request = 0;
@@ -91,7 +92,7 @@ export class Connection {
   private async greet(socket: WebSocket): Promise<void> {
     const patience = window.setTimeout(() => socket.close(), kQuietLimit_ms);
     try {
-      const { head } = await this.ask({ type: "hello", protocol: kProtocol, client: this.client });
+      const { head } = await this.ask({ type: "hello", protocol: kProtocol, client: this.client, ...(this.name ? { name: this.name } : {}) });
       const before = this.hello;
       this.hello = head as unknown as Hello;
       // Another program, or another folder, answers at this address now.

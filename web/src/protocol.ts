@@ -13,6 +13,7 @@ export interface LabelRow {
   instance: number;
   color: string; // "#rrggbb"
   defined: boolean;
+  locked?: boolean;
   points: number;
   control_points: number;
 }

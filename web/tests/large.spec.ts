@@ -1,33 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ten million points: how soon there is something to see, and what the page needs. For make evidence: with SACCADE_LARGE=1 alone.
-import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { kTops, kTable, kBox, makeTable } from "./support/clouds";
 import { expect, keep, test } from "./support/desk";
 import { Annotator } from "./support/annotator";
+import { memoryOf } from "./support/memory";
 
 const kFirstPicture_ms = 10_000;
 const kMostHeap_mb = 1500;
 const kMostBrowser_mb = 4000; // all its processes, with what software rendering keeps in place of a graphics card
-
-/** Memory of a process's descendants by their names, in MiB. What processes share is left out. */
-function memoryOf(root: number): Map<string, number> {
-  const parents = new Map<number, number>();
-  const all = new Map<number, { name: string; mb: number }>();
-  for (const number of readdirSync("/proc").filter((one) => /^\d+$/.test(one)).map(Number)) {
-    try {
-      const status = readFileSync(`/proc/${number}/status`, "utf8");
-      parents.set(number, Number(/^PPid:\s+(\d+)/m.exec(status)?.[1]));
-      all.set(number, { name: /^Name:\s+(\S+)/m.exec(status)?.[1] ?? "", mb: Number(/^RssAnon:\s+(\d+)/m.exec(status)?.[1] ?? 0) / 1024 });
-    } catch {
-      // has ended meanwhile
-    }
-  }
-  const belongs = (process: number | undefined): boolean => process !== undefined && (process === root || belongs(parents.get(process)));
-  const sums = new Map<string, number>();
-  for (const [process, { name, mb }] of all) if (process !== root && belongs(process)) sums.set(name, (sums.get(name) ?? 0) + mb);
-  return sums;
-}
 
 test("ten million points", async ({ desk, context }) => {
   test.setTimeout(900_000);

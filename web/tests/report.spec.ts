@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { expect, type Page, test } from "@playwright/test";
-import { cell, comparison, exploration, faults, filtered, partsOfPage, segments, tables, update, writeReport } from "./support/report";
+import { benchmark, cell, comparison, exploration, faults, filtered, partsOfPage, segments, tables, update, writeReport } from "./support/report";
 
 let folder = "";
 test.beforeEach(() => void (folder = mkdtempSync(join(tmpdir(), "saccade-report-"))));
@@ -30,7 +30,8 @@ const kinds: [name: string, address: () => string, heading: string, parts: strin
   ["explore", () => exploreAddress(), "Exploration of tabletop-1", ["Summary", "Views", "Run"]],
   ["update", () => { const { record, pictures, details } = update(); return writeReport(folder, record, pictures, details); }, "Update of jug", ["Summary", "Task", "Looking again", "Run"]],
   ["cell", () => { const { record, pictures } = cell(); return writeReport(folder, record, pictures); }, "Updates of my cell", ["The map now", "Tasks", "Run"]],
-  ["compare", () => { const { record, details } = comparison(); return writeReport(folder, record, [], details); }, "Strategies compared", ["All scenes", "clutter:5", "clutter:6", "Comparison"]],
+  ["compare", () => { const { record, details } = comparison(); return writeReport(folder, record, [], details); }, "Strategies compared", ["All scenes", "clutter:5", "clutter:6", "Slices", "Comparison"]],
+  ["benchmark", () => { const { record, details } = benchmark(); return writeReport(folder, record, [], details); }, "Benchmark one-shot", ["one-shot, version 1", "All scenes", "clutter:5", "clutter:6", "Comparison"]],
   ["reproduce", () => { const { record, pictures } = tables(); return writeReport(folder, record, pictures); }, "Tables of the thesis", ["Table 4.4", "Run"]],
   ["segment", () => { const { record, pictures } = segments(); return writeReport(folder, record, pictures); }, "Segments of table.pcd", ["Summary", "Run"]],
   ["filter", () => { const { record, pictures } = filtered(); return writeReport(folder, record, pictures); }, "Filtered frames of filtered", ["Summary", "Run"]],
@@ -55,6 +56,34 @@ for (const [name, address, heading, parts] of kinds) {
     expect(wrong).toEqual([]);
   });
 }
+
+test("a comparison in slices says how far each is and what failed", async ({ page }) => {
+  const { record, details } = comparison();
+  const wrong = await open(page, writeReport(folder, record, [], details));
+  const slices = page.locator("#slices");
+  await expect(slices.locator("p").first()).toHaveText("2 slices: 1 done, 1 failed.");
+  await expect(slices.locator("li")).toHaveText("Slice 1 of 2: clutter:6: no surface of an object can be seen");
+  await expect(slices.locator("tbody tr")).toHaveCount(2);
+  await expect(slices.locator("tbody tr").nth(1)).toContainText("4 of 6");
+  delete record.result["slices"];
+  await open(page, writeReport(folder, record, [], details));
+  await expect(page.locator("#slices")).toHaveCount(0);
+  expect(wrong).toEqual([]);
+});
+
+test("a benchmark has ours and published figures in one table", async ({ page }) => {
+  const { record, details } = benchmark();
+  const wrong = await open(page, writeReport(folder, record, [], details));
+  const rows = page.locator("#benchmark tbody tr");
+  await expect(rows).toHaveCount(2);
+  await expect(rows.nth(0)).toContainText("99.0 ± 1.0");
+  await expect(rows.nth(0)).toContainText("this run");
+  await expect(rows.nth(1)).toContainText("12.2");
+  await expect(rows.nth(1)).toContainText("93.1");
+  await expect(rows.nth(1)).toContainText("year not known, a survey; mean over its objects");
+  await expect(page.locator("#benchmark")).toContainText("Stand-ins: these objects are made by rule");
+  expect(wrong).toEqual([]);
+});
 
 test("the cells of reproduced tables are shown with their own drawings", async ({ page }) => {
   const { record, pictures } = tables();

@@ -219,10 +219,10 @@ class SurfelMap:
         """Writes these surfels: PLY for a name that ends in .ply, else PCD."""
 
 class Tracker:
-    """Tracks a camera against a TsdfMap (thesis 2.2.1), and fuses its frames into it. Methods return a dict: accepted, T_world_camera (4 x 4), why (where the track is lost), fused; and of ICP rmse_m (of point-to-plane distances, metres), inlier_share, agreement, iterations (0 where none ran)."""
+    """Tracks a camera against a TsdfMap (thesis 2.2.1), and fuses its frames into it. Methods return a dict: accepted, T_world_camera (4 x 4), why (where the track is lost), fused; and of ICP rmse_m (of point-to-plane distances, metres), inlier_share, agreement, iterations (0 where none ran); confidence (0 to 1, or None) and relocalised."""
     def __init__(self, map: Any, camera: PinholeCamera, mode: str = ...) -> None:
-        """`mode`: icp (from the last pose; `T_hint` is that of the first frame, else the identity), hint (ICP from `T_hint`) or forced (`T_hint` as it is)."""
-    def track(self, depth: numpy.typing.ArrayLike, T_hint: Optional[numpy.typing.ArrayLike] = ...) -> dict:
+        """`mode`: icp (from the last pose; `T_hint` is that of the first frame, else the identity), rgbd (as icp, with the colours of fused frames and from the last motion), hint (ICP from `T_hint`) or forced (`T_hint` as it is)."""
+    def track(self, depth: numpy.typing.ArrayLike, T_hint: Optional[numpy.typing.ArrayLike] = ..., color: Optional[numpy.typing.ArrayLike] = ...) -> dict:
         """Finds where a depth image, H x W as of TsdfMap.integrate, was taken; map and last pose stay."""
     def fuse(self, depth: numpy.typing.ArrayLike, T_hint: Optional[numpy.typing.ArrayLike] = ..., color: Optional[numpy.typing.ArrayLike] = ...) -> dict:
         """As track, and fuses the frame where the track was found. `color`: H x W x 3 uint8."""

@@ -162,10 +162,9 @@ std::vector<std::string> notes_of(const Scenario& scenario, const AnnotationExpe
   const std::array<Budget, 2> budgets = budgets_of(scenario);
   return {
       "No person annotates here: simulated annotators who know the truth stand for the thesis' ten people. With "
-      "control "
-      "points they click at the centre of the largest region that is wrong; rectangles they draw around it, in the "
-      "best "
-      "of six views, on the surface or through it. The best of all possible rectangles no person finds: they show "
+      "control points they click at the centre of the largest region that is wrong; rectangles they draw around it, in "
+      "the best of six views, on the surface or through it. The best of all possible rectangles no person finds: they "
+      "show "
       "what rectangles could do. Time and undos are people's.",
       experiments.about,
       "Actions: as many as people placed control points (" + budgets[0].text() + "), and as many per label (" +
@@ -177,8 +176,10 @@ std::vector<std::string> notes_of(const Scenario& scenario, const AnnotationExpe
       "(the thesis' background). ±: over people in the thesis, over clouds here. The thesis' own two ground truths "
       "differ in " +
           std::to_string(scenario.truths_differ) + " of " + std::to_string(scenario.points) + " points.",
-      "Table 4.4's weights were chosen on fused clouds; single frames of a depth camera are not smooth enough for them "
-      "(docs/decisions/0014-annotation-weights.md)."};
+      "Table 4.4's weights were chosen on fused clouds; single frames of a depth camera are not smooth enough for "
+      "them, "
+      "above all not for Ω_max = 1 (docs/decisions/0014-annotation-weights.md). \"As printed\" and with these weights, "
+      "clicks spread as in Algorithm 8; ours stop at strong borders (docs/design/annotation-leaks.md)."};
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ struct Annotator {
   NeighbourhoodConfig graph;
 };
 
-inline const std::array<Annotator, 4> kAnnotators{
-    {{"control points", "ours", cli::AnnotationMethod::control_points, {}},
+inline const std::array<Annotator, 5> kAnnotators{
+    {{"control points", "ours", cli::AnnotationMethod::control_points, {.strong_borders = true}},
+     {"control points", "ours, as printed", cli::AnnotationMethod::control_points, {}},
      {"control points", "Table 4.4", cli::AnnotationMethod::control_points, thesis::kTable4_4},
      {"rectangles", "–", cli::AnnotationMethod::rectangle, {}},
      {"best rectangles", "–", cli::AnnotationMethod::best_rectangle, {}}}};

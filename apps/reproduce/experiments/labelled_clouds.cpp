@@ -36,12 +36,13 @@ Result<LabelledClouds> LabelledClouds::open(const TableOptions& options) {
   clouds.seed_ = options.seed;
   clouds.image_width_px_ = options.image_width_px;
   if (options.clouds.empty()) {
-    for (const char* scene : kLabelledScenes) clouds.jobs_.push_back({scene, {}, {}, {}, {}});
+    for (const char* scene : kLabelledScenes) clouds.jobs_.emplace_back().cloud = scene;
     return clouds;
   }
   clouds.files_.cloud = options.clouds;
   clouds.files_.truth = options.clouds;
-  SACCADE_TRY(clouds.jobs_, plan_jobs(clouds.files_));
+  SACCADE_TRY(cli::JobList list, plan_jobs(clouds.files_));
+  clouds.jobs_ = std::move(list.jobs);
   return clouds;
 }
 

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kByControlPoints{0};  // index into kAnnotators: with our weights
-constexpr std::size_t kByRectangles{2};
+constexpr std::size_t kByRectangles{3};
 
 /// The label that most points have, and that counts as none (the thesis' background).
 std::uint32_t background_of(const std::vector<std::uint32_t>& truth) {

@@ -206,9 +206,10 @@ Result<ReproducedTable> reproduce_positions(const CloseUp& close_up, const Table
   }
   table.notes = {
       "Colours are those of the mode filter on both sides. Positions on the right are those of the modes with guided "
-      "depths, which elsewhere are not used (decision 20). The gap between panel and wall, which the thesis shows to "
-      "open, is "
-      "open on both: depths that differ by more than 2 cm never meet in a surfel here."};
+      "depths" +
+      std::string{options.as_printed ? "" : ", which elsewhere are not used (decision 20)"} +
+      ". The gap between panel and wall, which the thesis shows to open, is open on both: depths that differ by more "
+      "than 2 cm never meet in a surfel here."};
   add_surfel_notes(options, false, table);
   table.figures = {{"rows", std::move(rows)}};
   if (options.draws) table.pictures.push_back({std::string{close_up.file}, compose(sheet)});

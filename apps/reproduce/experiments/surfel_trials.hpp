@@ -16,6 +16,9 @@ namespace saccade::reproduce {
 /// One for each of kSurfelScenes, as far as they were carried out.
 using SurfelExperiments = std::array<std::optional<thesis::SurfelTrial>, kSurfelScenes.size()>;
 
+/// Returns the configuration for the options: ours, or the printed one with --as-printed (decision 41).
+[[nodiscard]] thesis::SurfelTrialConfig surfel_trial_config(const TableOptions& options);
+
 /// Carries one trial out unless it is there. Errors of carry_out_surfel_trial.
 /// @param scene  of kSurfelScenes
 /// @return the trial, which lives as long as `all`

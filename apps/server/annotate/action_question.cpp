@@ -77,6 +77,7 @@ Result<ScriptedAction> parsed_action(const nlohmann::json& head) {
   auto script = parse_annotation_script(text);
   if (!script) return Error{Errc::invalid_argument, script.error().message, "action"};
   if (script->size() != 1) return too_much("action is one action");
+  if (!script->front().cloud.empty()) return too_much("an action is on the cloud that is open");
   return std::move(script->front());
 }
 
@@ -117,8 +118,10 @@ std::vector<Eigen::Vector3f> without_hidden(std::span<const Eigen::Vector3f> pos
 
 }  // namespace
 
-Result<AnnotationAction> asked_action(const nlohmann::json& head, std::span<const Eigen::Vector3f> positions_m,
-                                      const Annotation& annotation, std::uint64_t client, const Executor& executor) {
+Result<AnnotationAction> asked_action(const nlohmann::json& head, const AskedOn& subject, std::uint64_t client,
+                                      const Executor& executor) {
+  const Annotation& annotation = subject.annotation;
+  std::span<const Eigen::Vector3f> positions_m = subject.positions_m;
   SACCADE_TRY(ScriptedAction scripted, parsed_action(head));
   SACCADE_TRY(const bool trees, asks_for_trees(head));
   SACCADE_TRY(const std::vector<std::uint32_t> hidden, hidden_labels(head));
@@ -139,7 +142,8 @@ Result<AnnotationAction> asked_action(const nlohmann::json& head, std::span<cons
     shown_m = without_hidden(positions_m, annotation, hidden);
     positions_m = shown_m;
   }
-  auto action = resolve_action(scripted, positions_m, annotation, client, executor);
+  auto action = resolve_action(scripted, positions_m, annotation, client, executor, Eigen::Vector3d::Zero(),
+                               subject.segments, subject.before);
   if (!action) return in_action(action.error());
   if (trees) return roots_of(std::get<PaintPoints>(action->change).points, annotation, client);
   return action;

@@ -2,16 +2,20 @@
 #include "server/annotate/annotated_cloud.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "saccade/io/clouds/cloud_upright.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
 
 Result<LoadedCloud> load_cloud(const std::filesystem::path& path) {
-  LoadedCloud cloud{path, {}, {}};
-  SACCADE_TRY(cloud.file, read_cloud(path));
-  SACCADE_TRY(cloud.points, in_file(cloud_from_fields(cloud.file.fields()), path));
+  LoadedCloud cloud{path, {}, {}, {}};
+  SACCADE_TRY(CloudFile file, read_cloud(path));
+  SACCADE_TRY(cloud.points, in_file(cloud_from_fields(file.fields()), path));
+  cloud.upright_hints = upright_hints_of(file);
+  cloud.fields = CloudFields{path, std::move(file)};
   const bool any = std::any_of(cloud.points.positions_m.begin(), cloud.points.positions_m.end(),
                                [](const Eigen::Vector3f& p) { return p.allFinite(); });
   if (!any) return Error{Errc::corrupt_data, "has no point with a finite place; there is nothing to label", path};
@@ -61,6 +65,14 @@ LabelledPoints labelled_points(std::vector<std::uint32_t> labels, std::vector<st
     points.rows.push_back(row);
   }
   return points;
+}
+
+Eigen::Vector3d box_up(const LoadedCloud& cloud, bool has_tilt) {
+  const Upright upright = find_upright(cloud.points.positions_m, cloud.upright_hints);
+  if (has_tilt) return upright.up;
+  Eigen::Index axis{0};
+  upright.up.cwiseAbs().maxCoeff(&axis);
+  return std::copysign(1.0, upright.up[axis]) * Eigen::Vector3d::Unit(axis);
 }
 
 Status write_names(const std::filesystem::path& path, std::span<const NamedLabel> names) {

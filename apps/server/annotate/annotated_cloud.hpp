@@ -7,15 +7,17 @@
 #include <vector>
 
 #include "saccade/annotate/annotation.hpp"
-#include "saccade/io/clouds/cloud_io.hpp"
+#include "saccade/cloud/upright.hpp"
 #include "saccade/io/clouds/label_io.hpp"
+#include "server/annotate/cloud_fields.hpp"
 
 namespace saccade::server {
 
 struct LoadedCloud {
   std::filesystem::path path;
-  CloudFile file;
   PointCloud points;
+  CloudFields fields;
+  UprightHints upright_hints;
 };
 
 /// Loads a cloud. Errors of read_cloud and cloud_from_fields; corrupt_data for a cloud without points.
@@ -41,6 +43,10 @@ struct LabelledPoints {
 /// Returns points with labels that have no definition besides their numbers.
 [[nodiscard]] LabelledPoints labelled_points(std::vector<std::uint32_t> labels,
                                              std::vector<std::uint32_t> control_points);
+
+/// Returns the vertical of label boxes: they stand upright; those of KITTI, which know no tilt, along the axis of the
+/// cloud's frame nearest to up.
+[[nodiscard]] Eigen::Vector3d box_up(const LoadedCloud& cloud, bool has_tilt);
 
 /// Writes text, or JSON for names ending in .json.
 [[nodiscard]] Status write_names(const std::filesystem::path& path, std::span<const NamedLabel> names);

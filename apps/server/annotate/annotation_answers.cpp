@@ -9,8 +9,6 @@
 #include <string>
 #include <unordered_map>
 
-#include "saccade/io/clouds/scalar_fields.hpp"
-
 namespace saccade::server {
 namespace {
 
@@ -75,7 +73,7 @@ json graph_json(const NeighbourhoodConfig& graph) {
           {"max_path", graph.max_path},           {"adapt_to_density", graph.adapt_to_density}};
 }
 
-json cloud_json(const OpenCloud& cloud, std::size_t index, std::size_t shown) {
+json cloud_json(const OpenCloud& cloud, std::size_t index, const ShownPoints& shown) {
   const CloudFacts& facts = cloud.facts();
   const Eigen::Vector3f& a = facts.least_m;
   const Eigen::Vector3f& b = facts.greatest_m;
@@ -85,15 +83,17 @@ json cloud_json(const OpenCloud& cloud, std::size_t index, std::size_t shown) {
            {"name", cloud.cloud().path.filename().string()},
            {"points", cloud.cloud().points.positions_m.size()},
            {"finite", facts.finite},
-           {"shown", shown},
+           {"shown", shown.first},
            {"bounds", {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}},
            {"spacing_m", facts.spacing_m},
            {"has_colors", !cloud.cloud().points.colors.empty()},
-           {"fields", scalar_field_names(cloud.cloud().file.fields())},
+           {"fields", cloud.cloud().fields.names()},
+           {"has_segments", !cloud.segments().empty()},
            {"has_normals", !cloud.cloud().points.normals.empty()},
            {"up", {up.x(), up.y(), up.z()}},
            {"offset", {offset_m.x(), offset_m.y(), offset_m.z()}},
            {"graph", graph_json(cloud.graph_config())}};
+  if (shown.tiled) out["tiles"] = cloud.tiles()->tree().nodes().size();
   if (const auto& towards = facts.upright.towards_viewer) {
     out["towards_viewer"] = {towards->x(), towards->y(), towards->z()};
   }
@@ -109,6 +109,16 @@ ControlPointRow row_of(std::uint32_t point, const std::optional<ControlPoint>& c
     row.start_cost = static_cast<float>(control->start_cost);
   }
   return row;
+}
+
+/// Tells whether a neighbour of the point is in another segment.
+bool is_border(const OpenCloud& cloud, std::uint32_t point) {
+  const Neighbourhood& graph = cloud.annotation().forest().neighbourhood();
+  const std::span<const std::uint32_t> segments = cloud.segments();
+  const auto edges = graph.edges(graph.node_of(point));
+  return std::any_of(edges.begin(), edges.end(), [&](const Neighbourhood::Edge& edge) {
+    return segments[graph.point_of(edge.node)] != segments[point];
+  });
 }
 
 }  // namespace
@@ -140,23 +150,38 @@ std::vector<ControlPointRow> control_points_now(std::span<const std::uint32_t> p
   return rows;
 }
 
-LabelGroups groups_of(std::span<const std::uint32_t> points, const OpenCloud& cloud, std::size_t shown) {
+std::span<const std::uint32_t> ShownPoints::points(const OpenCloud& cloud, std::vector<std::uint32_t>& room) const {
+  if (!tiled) return cloud.order().points(0, first);
+  room = cloud.tiles()->points_of(held);
+  return room;
+}
+
+LabelGroups groups_of(std::span<const std::uint32_t> points, const OpenCloud& cloud, const ShownPoints& shown) {
   Grouping grouping{cloud.annotation().labels()};
-  if (shown == cloud.order().size()) {  // points that are not finite never have labels
+  if (shown.tiled) {
+    const std::vector<bool> is_held = cloud.tiles()->table_of(shown.held);
+    std::vector<std::uint32_t> there;
+    std::copy_if(points.begin(), points.end(), std::back_inserter(there), [&](std::uint32_t point) {
+      const std::uint32_t node = cloud.tiles()->node_of(point);
+      return node != PointOctree::kNoNode && is_held[node];
+    });
+    grouping.add(there);
+  } else if (shown.first == cloud.facts().finite) {  // points that are not finite never have labels
     grouping.add(points);
   } else {
     std::vector<std::uint32_t> there;
     std::copy_if(points.begin(), points.end(), std::back_inserter(there),
-                 [&](std::uint32_t point) { return cloud.order().is_among(point, shown); });
+                 [&](std::uint32_t point) { return cloud.order().is_among(point, shown.first); });
     grouping.add(there);
   }
   return std::move(grouping).finish();
 }
 
-LabelGroups labelled_groups(const OpenCloud& cloud, std::size_t shown) {
+LabelGroups labelled_groups(const OpenCloud& cloud, const ShownPoints& shown) {
   const std::span<const std::uint32_t> labels = cloud.annotation().labels();
   std::vector<std::uint32_t> labelled;
-  const std::span<const std::uint32_t> among = cloud.order().points(0, shown);
+  std::vector<std::uint32_t> room;
+  const std::span<const std::uint32_t> among = shown.points(cloud, room);
   std::copy_if(among.begin(), among.end(), std::back_inserter(labelled),
                [&](std::uint32_t point) { return labels[point] != kNoLabel; });
   Grouping grouping{labels};
@@ -182,7 +207,7 @@ void add_annotation(json& head, const OpenCloud& cloud) {
   head["control_points"] = cloud.census().control_points();
 }
 
-SharedMessage opened_message(json head, const OpenCloud& cloud, std::size_t index, std::size_t shown,
+SharedMessage opened_message(json head, const OpenCloud& cloud, std::size_t index, const ShownPoints& shown,
                              std::uint64_t client) {
   head["cloud"] = cloud_json(cloud, index, shown);
   head["ready"] = cloud.ready();
@@ -193,9 +218,28 @@ SharedMessage opened_message(json head, const OpenCloud& cloud, std::size_t inde
   return std::move(message).finish();
 }
 
-SharedMessage points_message(json head, const OpenCloud& cloud, std::size_t from, std::size_t count) {
+SharedMessage octree_message(json head, const Tiles& tiles) {
+  struct Row {
+    std::array<std::uint32_t, 6> numbers;
+    float spacing_m;
+  };
+  static_assert(sizeof(Row) == 28);
+  const PointOctree& tree = tiles.tree();
+  std::vector<Row> rows;
+  for (const PointOctree::Node& node : tree.nodes()) {
+    rows.push_back({{node.parent, node.level, node.x, node.y, node.z, node.count}, node.spacing_m});
+  }
+  const Eigen::Vector3d& origin_m = tree.origin_m();
+  head["count"] = rows.size();
+  head["cube"] = {origin_m.x(), origin_m.y(), origin_m.z(), tree.edge_m()};
+  MessageWriter message{head};
+  message.append(std::span<const Row>{rows});
+  return std::move(message).finish();
+}
+
+SharedMessage points_message(json head, const OpenCloud& cloud, std::span<const std::uint32_t> chosen) {
   const PointCloud& points = cloud.cloud().points;
-  const std::span<const std::uint32_t> chosen = cloud.order().points(from, count);
+  const std::size_t count = chosen.size();
   std::vector<Eigen::Vector3f> positions_m;
   std::vector<Rgba> colors;
   std::vector<std::uint32_t> labels;
@@ -207,7 +251,6 @@ SharedMessage points_message(json head, const OpenCloud& cloud, std::size_t from
     colors.push_back(points.colors.empty() ? kNoColor : rgba_of(points.colors[point]));
     labels.push_back(cloud.ready() ? cloud.annotation().label_of(point) : kNoLabel);
   }
-  head["from"] = from;
   head["count"] = count;
   MessageWriter message{head};
   message.append(std::span<const Eigen::Vector3f>{positions_m});
@@ -217,23 +260,39 @@ SharedMessage points_message(json head, const OpenCloud& cloud, std::size_t from
   return std::move(message).finish();
 }
 
-SharedMessage field_message(json head, const OpenCloud& cloud, std::string_view name, std::size_t from,
-                            std::size_t count) {
+Result<SharedMessage> field_message(json head, const OpenCloud& cloud, std::string_view name,
+                                    std::span<const std::uint32_t> chosen) {
   std::vector<float> shown;
-  const std::span<const std::uint32_t> chosen = cloud.order().points(from, count);
   if (name == kNormalField) {
     for (const std::uint32_t point : chosen) {
       const Eigen::Vector3f& normal = cloud.cloud().points.normals[point];
       shown.insert(shown.end(), normal.data(), normal.data() + 3);
     }
   } else {
-    const Column& column = *cloud.cloud().file.fields().find(name);
-    for (const std::uint32_t point : chosen) shown.push_back(static_cast<float>(column.value(point)));
+    SACCADE_TRY(const std::span<const float> numbers, cloud.cloud().fields.numbers(name));
+    for (const std::uint32_t point : chosen) shown.push_back(numbers[point]);
   }
-  head["from"] = from;
-  head["count"] = count;
+  head["count"] = chosen.size();
   MessageWriter message{head};
   message.append(std::span<const float>{shown});
+  return std::move(message).finish();
+}
+
+SharedMessage segments_message(json head, const OpenCloud& cloud, std::span<const std::uint32_t> chosen) {
+  const std::span<const std::uint32_t> segments = cloud.segments();
+  std::vector<std::uint32_t> shown;
+  std::vector<std::uint8_t> borders;
+  shown.reserve(chosen.size());
+  borders.reserve(chosen.size());
+  for (const std::uint32_t point : chosen) {
+    shown.push_back(segments[point]);
+    borders.push_back(is_border(cloud, point) ? 1 : 0);
+  }
+  head["count"] = chosen.size();
+  MessageWriter message{head};
+  message.append(chosen);
+  message.append(std::span<const std::uint32_t>{shown});
+  message.append(std::span<const std::uint8_t>{borders});
   return std::move(message).finish();
 }
 

@@ -36,10 +36,21 @@ struct LabelGroups {
   std::vector<std::uint32_t> points;
 };
 
+/// Points that a page has.
+struct ShownPoints {
+  std::size_t first{0};  ///< number of points, the first of the order
+  bool tiled{false};     ///< the points of `held` in place of these
+  HeldTiles held{};
+
+  /// Lists them. Those of tiles are put into `room`.
+  [[nodiscard]] std::span<const std::uint32_t> points(const OpenCloud& cloud, std::vector<std::uint32_t>& room) const;
+};
+
 /// Returns those of the given points that are shown.
-[[nodiscard]] LabelGroups groups_of(std::span<const std::uint32_t> points, const OpenCloud& cloud, std::size_t shown);
+[[nodiscard]] LabelGroups groups_of(std::span<const std::uint32_t> points, const OpenCloud& cloud,
+                                    const ShownPoints& shown);
 /// Returns the labelled ones of all points shown.
-[[nodiscard]] LabelGroups labelled_groups(const OpenCloud& cloud, std::size_t shown);
+[[nodiscard]] LabelGroups labelled_groups(const OpenCloud& cloud, const ShownPoints& shown);
 
 /// Adds sequence, client_actions, can_undo, can_redo.
 void add_state(nlohmann::json& head, const OpenCloud& cloud, std::uint64_t client);
@@ -48,15 +59,21 @@ void add_annotation(nlohmann::json& head, const OpenCloud& cloud);
 
 /// Answers `open` and `new`; adds to `head`.
 [[nodiscard]] SharedMessage opened_message(nlohmann::json head, const OpenCloud& cloud, std::size_t index,
-                                           std::size_t shown, std::uint64_t client);
-/// Answers `points`.
-[[nodiscard]] SharedMessage points_message(nlohmann::json head, const OpenCloud& cloud, std::size_t from,
-                                           std::size_t count);
+                                           const ShownPoints& shown, std::uint64_t client);
+/// Answers `octree`.
+[[nodiscard]] SharedMessage octree_message(nlohmann::json head, const Tiles& tiles);
+/// Answers `points` and `tiles`; adds to `head`.
+[[nodiscard]] SharedMessage points_message(nlohmann::json head, const OpenCloud& cloud,
+                                           std::span<const std::uint32_t> chosen);
 /// Name of the field of normals, three numbers per point.
 inline constexpr std::string_view kNormalField{"normal"};
-/// Answers `field`. Expects a name of scalar_field_names, or kNormalField where there are normals.
-[[nodiscard]] SharedMessage field_message(nlohmann::json head, const OpenCloud& cloud, std::string_view name,
-                                          std::size_t from, std::size_t count);
+/// Answers `field`. Expects a name of scalar_field_names, or kNormalField where there are normals. Errors of
+/// CloudFields::numbers.
+[[nodiscard]] Result<SharedMessage> field_message(nlohmann::json head, const OpenCloud& cloud, std::string_view name,
+                                                  std::span<const std::uint32_t> chosen);
+/// Answers `segments`. Expects a cloud that has some.
+[[nodiscard]] SharedMessage segments_message(nlohmann::json head, const OpenCloud& cloud,
+                                             std::span<const std::uint32_t> chosen);
 /// Answers `changes` and `ready`.
 [[nodiscard]] SharedMessage changes_message(nlohmann::json head, std::span<const ControlPointRow> control_points,
                                             const LabelGroups& groups);

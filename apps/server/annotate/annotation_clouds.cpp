@@ -33,7 +33,7 @@ Result<OpenCloud*> AnnotationService::opened_cloud(std::size_t index, Page* page
   const std::size_t points = opened->cloud().points.positions_m.size();
   if (points <= config_.graph_at_once_points) {
     SACCADE_TRY(const OpenCloud::Built built, opened->build(executor_, progress));
-    opened->begin(built);
+    begin(*opened, built);
   }
   OpenCloud& cloud = *(clouds_[index] = std::move(opened));
   if (!cloud.ready()) build(index, cloud);
@@ -86,7 +86,7 @@ void AnnotationService::built(std::size_t index, const OpenCloud* cloud, const R
     return;
   }
   try {
-    there->second->begin(*built);
+    begin(*there->second, *built);
   } catch (const std::exception& problem) {  // there is no memory for it
     there->second->fail({Errc::unavailable, problem.what(), "session"});
     send_read_only(index, problem.what());
@@ -105,8 +105,16 @@ void AnnotationService::leave(Page& page, std::optional<std::size_t> next) {
   last_used_ = index;
 }
 
-void AnnotationService::show(Page& page, const OpenCloud& cloud) {
-  page.shown = std::min({page.budget, cloud.order().size(), config_.most_shown_points});
+void AnnotationService::show(Page& page, const OpenCloud& cloud, bool tiled) {
+  page.shown = {};
+  page.shown.tiled = tiled && cloud.tiles() != nullptr;
+  if (!page.shown.tiled) page.shown.first = std::min({page.budget, cloud.facts().finite, config_.most_shown_points});
+}
+
+Result<const Tiles*> AnnotationService::tiles_of(const Page& page) {
+  SACCADE_TRY(const OpenCloud* const cloud, cloud_of(page));
+  if (page.shown.tiled) return cloud->tiles();
+  return Error{Errc::invalid_argument, "the cloud was not opened with tiles, or is too small for them", "nodes"};
 }
 
 Result<OpenCloud*> AnnotationService::cloud_of(const Page& page) {
@@ -143,7 +151,10 @@ void AnnotationService::send_progress(std::size_t index, const std::string& stag
 
 void AnnotationService::send_people(std::size_t index) {
   const std::vector<Page*> pages = pages_of(index);
-  const SharedMessage message = MessageWriter{json{{"type", "people"}, {"count", pages.size()}}}.finish();
+  json people = json::array();
+  for (const Page* page : pages) people.push_back({{"client", page->client}, {"name", page->name}});
+  const SharedMessage message =
+      MessageWriter{json{{"type", "people"}, {"count", pages.size()}, {"people", std::move(people)}}}.finish();
   for (const Page* page : pages) clients_.send(page->id, message);
 }
 
@@ -163,20 +174,25 @@ void AnnotationService::send_ready(std::size_t index, const OpenCloud& cloud) {
   }
 }
 
-void AnnotationService::send_changes(std::size_t index, const OpenCloud& cloud, const OpenCloud::Change& change,
-                                     std::uint64_t client) {
+void AnnotationService::send_changes(std::size_t index, const Author& author, const OpenCloud& cloud,
+                                     const OpenCloud::Change& change, const json& action) {
   const Annotation& annotation = cloud.annotation();
   const std::vector<ControlPointRow> control_points = control_points_now(change.applied.control_points, cloud);
   const json rows = label_rows(change.labels, annotation, cloud.census());
-  std::map<std::size_t, LabelGroups> groups;  // by the number of points that are shown
+  json what{{"do", action.at("do")}};
+  if (action.contains("label")) what["label"] = action.at("label");
+  std::map<std::size_t, LabelGroups> groups;  // by the number of points that are shown; not for tiles
   for (const Page* page : pages_of(index)) {
-    auto found = groups.find(page->shown);
-    if (found == groups.end()) {
-      found = groups.emplace(page->shown, groups_of(change.applied.points, cloud, page->shown)).first;
+    auto found = groups.find(page->shown.first);
+    if (page->shown.tiled || found == groups.end()) {
+      groups[page->shown.first] = groups_of(change.applied.points, cloud, page->shown);
+      found = groups.find(page->shown.first);
     }
     json head{{"type", "changes"},
               {"sequence", cloud.sequence()},
-              {"client", client},
+              {"client", author.client},
+              {"name", author.name},
+              {"action", what},
               {"can_undo", cloud.can_undo(page->client)},
               {"can_redo", cloud.can_redo(page->client)},
               {"labels", rows}};

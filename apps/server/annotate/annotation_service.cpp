@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 
 #include "saccade/annotate/annotation_margin.hpp"
 #include "saccade/annotate/click_start.hpp"
-#include "saccade/io/clouds/scalar_fields.hpp"
+#include "saccade/cloud/label_boxes.hpp"
 #include "server/annotate/action_question.hpp"
 #include "server/annotate/annotation_answers.hpp"
 #include "server/annotate/label_export.hpp"
@@ -21,7 +20,6 @@ using nlohmann::json;
 
 constexpr std::uint64_t kProtocol{1};
 constexpr std::uint64_t kMostClient{(std::uint64_t{1} << 53U) - 1};  // largest number that a page represents exactly
-constexpr std::uint64_t kMostAtOnce{262'144};                        // points
 constexpr std::uint64_t kMost32{std::numeric_limits<std::uint32_t>::max()};
 constexpr std::uint16_t kBadData{1007};
 
@@ -31,9 +29,29 @@ HttpAnswer http_error(int status, const std::string& text) {
   return answer;
 }
 
+Result<bool> takes_tiles(const json& head) {
+  const auto tiles = head.find("tiles");
+  if (tiles == head.end()) return false;
+  if (!tiles->is_boolean()) return Error{Errc::invalid_argument, "tiles is true or false", "tiles"};
+  return tiles->get<bool>();
+}
+
 std::string value_of(const HttpRequest& request, const std::string& key) {
   const auto found = request.query.find(key);
   return found == request.query.end() ? std::string{} : found->second;
+}
+
+/// Returns the person's name; empty where none is given.
+Result<std::string> name_in(const json& head) {
+  constexpr std::size_t kMostBytes{64};
+  const auto found = head.find("name");
+  if (found == head.end()) return std::string{};
+  LabelInfo text;
+  if (found->is_string()) text.name = found->get<std::string>();
+  if (!found->is_string() || text.name.size() > kMostBytes || !text.validate()) {
+    return Error{Errc::invalid_argument, "name is a line of text of 64 bytes at most", "name"};
+  }
+  return text.name;
 }
 
 }  // namespace
@@ -44,9 +62,14 @@ AnnotationService::AnnotationService(AnnotationServiceConfig config, Clients& cl
       post_{std::move(post)},
       executor_{Executor::with_threads(config_.threads)} {
   SACCADE_EXPECTS(!config_.clouds.empty());
+  if (!config_.is_sequence) return;
+  std::vector<fs::path> sessions;
+  for (const ServedCloud& cloud : config_.clouds) sessions.push_back(cloud.session);
+  labels_ = SequenceLabels::of_sessions(sessions);
+  labels_.take(config_.start.presets);
 }
 
-void AnnotationService::opened(ConnectionId connection) { pages_[connection] = Page{connection, 0, {}, 0, 0}; }
+void AnnotationService::opened(ConnectionId connection) { pages_[connection].id = connection; }
 
 void AnnotationService::closed(ConnectionId connection) {
   const auto page = pages_.find(connection);
@@ -62,7 +85,9 @@ AnnotationService::Handler AnnotationService::handler_of(const std::string& type
       {"root", &AnnotationService::root},       {"tree", &AnnotationService::tree},
       {"margins", &AnnotationService::margins}, {"next_best_click", &AnnotationService::next_click},
       {"save", &AnnotationService::save},       {"new", &AnnotationService::begin_anew},
-      {"field", &AnnotationService::field}};
+      {"field", &AnnotationService::field},     {"octree", &AnnotationService::octree},
+      {"tiles", &AnnotationService::tiles},     {"segments", &AnnotationService::segments},
+      {"name", &AnnotationService::name},       {"boxes", &AnnotationService::boxes}};
   const auto found = handlers.find(type);
   return found == handlers.end() ? nullptr : found->second;
 }
@@ -112,6 +137,7 @@ void AnnotationService::abandon(Page& page) {
 Status AnnotationService::hello(Page& page, const Question& question) {
   SACCADE_TRY(const std::uint64_t protocol, whole_number(question.head, "protocol", 0, kMost32));
   if (protocol != kProtocol) return Error{Errc::unsupported, "this program speaks protocol 1", "protocol"};
+  SACCADE_TRY(page.name, name_in(question.head));
   SACCADE_TRY(page.client, whole_number(question.head, "client", 1, kMostClient));
   json clouds = json::array();
   for (const ServedCloud& served : config_.clouds) {
@@ -127,46 +153,30 @@ Status AnnotationService::hello(Page& page, const Question& question) {
   head["mode"] = "annotate";
   head["title"] = config_.title;
   head["clouds"] = std::move(clouds);
+  head["sequence"] = config_.is_sequence;
   head["colors"] = well_apart_colors();
   head["current"] = last_used_.value_or(0);
   clients_.send(page.id, MessageWriter{head}.finish());
   return {};
 }
 
+Status AnnotationService::name(Page& page, const Question& question) {
+  SACCADE_TRY(page.name, name_in(question.head));
+  clients_.send(page.id, MessageWriter{answer_head(question)}.finish());
+  if (page.cloud) send_people(*page.cloud);
+  return {};
+}
+
 Status AnnotationService::open(Page& page, const Question& question) {
   SACCADE_TRY(const std::uint64_t index, whole_number(question.head, "cloud", 0, config_.clouds.size() - 1));
   SACCADE_TRY(page.budget, whole_number(question.head, "budget", 1, kMost32));
+  SACCADE_TRY(const bool tiled, takes_tiles(question.head));
   SACCADE_TRY(OpenCloud* const cloud, opened_cloud(index, &page));
   const bool is_new = page.cloud != index;
   if (is_new) leave(page, index);
-  show(page, *cloud);
+  show(page, *cloud, tiled);
   clients_.send(page.id, opened_message(answer_head(question), *cloud, index, page.shown, page.client));
   if (is_new) send_people(index);
-  return {};
-}
-
-Status AnnotationService::points(Page& page, const Question& question) {
-  SACCADE_TRY(const OpenCloud* const cloud, cloud_of(page));
-  SACCADE_TRY(const std::uint64_t from, whole_number(question.head, "from", 0, page.shown));
-  SACCADE_TRY(const std::uint64_t asked, whole_number(question.head, "count", 0, kMostAtOnce));
-  const std::size_t count = std::min<std::size_t>(asked, page.shown - from);
-  clients_.send(page.id, points_message(answer_head(question), *cloud, from, count));
-  return {};
-}
-
-Status AnnotationService::field(Page& page, const Question& question) {
-  SACCADE_TRY(const OpenCloud* const cloud, cloud_of(page));
-  const auto found = question.head.find("name");
-  const std::string name = found != question.head.end() && found->is_string() ? found->get<std::string>() : "";
-  const std::vector<std::string> known = scalar_field_names(cloud->cloud().file.fields());
-  const bool is_normal = name == kNormalField && !cloud->cloud().points.normals.empty();
-  if (!is_normal && std::find(known.begin(), known.end(), name) == known.end()) {
-    return Error{Errc::not_found, "the cloud has no field of this name; `open` lists those it has", name};
-  }
-  SACCADE_TRY(const std::uint64_t from, whole_number(question.head, "from", 0, page.shown));
-  SACCADE_TRY(const std::uint64_t asked, whole_number(question.head, "count", 0, kMostAtOnce));
-  const std::size_t count = std::min<std::size_t>(asked, page.shown - from);
-  clients_.send(page.id, field_message(answer_head(question), *cloud, name, from, count));
   return {};
 }
 
@@ -183,16 +193,24 @@ Status AnnotationService::action(Page& page, const Question& question) {
   SACCADE_TRY(OpenCloud* const cloud, ready_cloud_of(page));
   if (const auto why = cloud->read_only()) return *why;
   SACCADE_CHECK(check_room(*page.cloud));
-  SACCADE_TRY(AnnotationAction asked, asked_action(question.head, cloud->cloud().points.positions_m,
-                                                   cloud->annotation(), page.client, executor_));
+  SACCADE_TRY(const std::optional<CarrySource> before, source_of(page, question));
+  const AskedOn subject{cloud->cloud().points.positions_m, cloud->segments(), cloud->annotation(),
+                        before ? &*before : nullptr};
+  SACCADE_TRY(AnnotationAction asked, asked_action(question.head, subject, page.client, executor_));
+  const auto* carried = std::get_if<PaintLabels>(&asked.change);
+  const std::size_t carried_points = carried == nullptr ? 0 : carried->points.size();
   const auto change = cloud->apply(guarded_click(cloud->annotation(), std::move(asked)));
   if (!change) {
     if (const auto why = cloud->read_only()) send_read_only(*page.cloud, why->to_string());
     return change.error();
   }
-  if (change->applied.done) send_changes(*page.cloud, *cloud, *change, page.client);
+  if (change->applied.done) {
+    send_changes(*page.cloud, {page.client, page.name}, *cloud, *change, question.head["action"]);
+    share_labels(*page.cloud, *change);
+  }
   json head = answer_head(question);
   head["done"] = change->applied.done;
+  if (before) head["carried"] = carried_points;
   add_state(head, *cloud, page.client);
   clients_.send(page.id, MessageWriter{head}.finish());
   return {};
@@ -217,7 +235,8 @@ Status AnnotationService::tree(Page& page, const Question& question) {
   const auto root = forest.root_of(point);
   std::vector<std::uint32_t> same;
   if (root) {
-    for (const std::uint32_t other : cloud->order().points(0, page.shown)) {
+    std::vector<std::uint32_t> room;
+    for (const std::uint32_t other : page.shown.points(*cloud, room)) {
       if (forest.root_of(other) == root) same.push_back(other);
     }
   }
@@ -225,23 +244,6 @@ Status AnnotationService::tree(Page& page, const Question& question) {
   head["count"] = same.size();
   MessageWriter message{head};
   message.append(std::span<const std::uint32_t>{same});
-  clients_.send(page.id, std::move(message).finish());
-  return {};
-}
-
-Status AnnotationService::margins(Page& page, const Question& question) {
-  constexpr float kSure{255.0F};
-  SACCADE_TRY(OpenCloud* const cloud, ready_cloud_of(page));
-  const std::span<const float> margins = cloud->margins();
-  std::vector<std::uint8_t> shown;
-  shown.reserve(page.shown);
-  for (const std::uint32_t point : cloud->order().points(0, page.shown)) {
-    shown.push_back(static_cast<std::uint8_t>(std::lround(kSure * margins[point])));
-  }
-  json head = answer_head(question);
-  head["count"] = shown.size();
-  MessageWriter message{head};
-  message.append(std::span<const std::uint8_t>{shown});
   clients_.send(page.id, std::move(message).finish());
   return {};
 }
@@ -262,13 +264,30 @@ Status AnnotationService::next_click(Page& page, const Question& question) {
   return {};
 }
 
+Status AnnotationService::boxes(Page& page, const Question& question) {
+  SACCADE_TRY(const OpenCloud* const cloud, ready_cloud_of(page));
+  const Eigen::Vector3d& up = cloud->facts().upright.up;
+  json head = answer_head(question);
+  head["boxes"] = json::array();
+  for (const LabelBox& box : label_boxes(cloud->cloud().points.positions_m, cloud->annotation().labels(), up)) {
+    const auto list = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
+    head["boxes"].push_back({{"label", box.label},
+                             {"center", list(box.center_m)},
+                             {"size", list(box.size_m)},
+                             {"axes", {list(box.axes.col(0)), list(box.axes.col(1)), list(box.axes.col(2))}}});
+  }
+  clients_.send(page.id, MessageWriter{head}.finish());
+  return {};
+}
+
 Status AnnotationService::save(Page& page, const Question& question) {
   SACCADE_TRY(const OpenCloud* const cloud, ready_cloud_of(page));
   const ServedCloud& served = config_.clouds[*page.cloud];
   const LabelledPoints labels = labelled_points(cloud->annotation());
   std::error_code ignored;  // writing says it better
   if (served.out.has_parent_path()) fs::create_directories(served.out.parent_path(), ignored);
-  SACCADE_CHECK(write_labels(served.out, cloud->cloud().file, labels.labels, labels.names()));
+  SACCADE_TRY(const auto file, cloud->cloud().fields.file());
+  SACCADE_CHECK(write_labels(served.out, *file, labels.labels, labels.names()));
   json files = {served.out.string()};
   if (!served.names.empty()) {
     SACCADE_CHECK(write_names(served.names, labels.names()));
@@ -285,11 +304,13 @@ Status AnnotationService::begin_anew(Page& page, const Question& question) {
   if (const auto why = cloud->read_only()) return *why;
   const std::size_t index = *page.cloud;
   SACCADE_TRY(const fs::path kept, cloud->begin_anew());
+  if (config_.is_sequence && !cloud->read_only()) static_cast<void>(cloud->define(labels_.list()));
   for (Page* other : pages_of(index)) {
     if (other->id == page.id) continue;
     other->cloud.reset();  // its questions refer to a dropped cloud until it opens it again
     clients_.send(other->id, MessageWriter{json{{"type", "reset"}}}.finish());
   }
+  page.shown.held.clear();
   json head = answer_head(question);
   head["kept"] = kept.filename().string();
   clients_.send(page.id, opened_message(std::move(head), *cloud, index, page.shown, page.client));

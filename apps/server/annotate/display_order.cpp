@@ -2,7 +2,6 @@
 #include "server/annotate/display_order.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "saccade/core/seeded_random.hpp"
@@ -24,25 +23,20 @@ DisplayOrder::DisplayOrder(std::span<const Eigen::Vector3f> positions_m)
 double typical_spacing_m(std::span<const Eigen::Vector3f> positions_m, const DisplayOrder& order,
                          const Executor& executor) {
   constexpr std::size_t kSamples{48};
-  constexpr std::size_t kNearest{5};  // the point itself and four others
-  if (order.size() < kNearest) return 0.0;
+  if (order.size() < 5) return 0.0;
   std::vector<float> distances_m2(std::min(kSamples, order.size()));
   executor.parallel_for(distances_m2.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t sample = begin; sample < end; ++sample) {
       const Eigen::Vector3f here_m = positions_m[order.points(sample, 1).front()];
-      std::array<float, kNearest> nearest;
-      nearest.fill(std::numeric_limits<float>::infinity());
-      for (const Eigen::Vector3f& p : positions_m) {
-        const float distance_m2 = (p - here_m).squaredNorm();
-        if (!(distance_m2 < nearest.back())) continue;
-        nearest.back() = distance_m2;
-        for (std::size_t i = kNearest - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
-          std::swap(nearest[i], nearest[i - 1]);
-        }
-      }
-      distances_m2[sample] = nearest.back();
+      FourNearest nearest;
+      for (const Eigen::Vector3f& p : positions_m) nearest.add((p - here_m).squaredNorm());
+      distances_m2[sample] = nearest.fourth_m2();
     }
   });
+  return median_distance_m(distances_m2);
+}
+
+double median_distance_m(std::span<float> distances_m2) {
   const float typical_m2 = upper_median(distances_m2);
   return std::isfinite(typical_m2) ? std::sqrt(static_cast<double>(typical_m2)) : 0.0;
 }

@@ -3,9 +3,11 @@
 // DisplayOrder: the order in which a page receives the points of a cloud. typical_spacing_m.
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
@@ -32,9 +34,29 @@ class DisplayOrder {
   std::vector<std::uint32_t> rank_;  ///< by point
 };
 
+/// Squared distances from a point to itself and its four nearest neighbours.
+class FourNearest {
+ public:
+  FourNearest() { distances_m2_.fill(std::numeric_limits<float>::infinity()); }
+  void add(float distance_m2) {
+    if (!(distance_m2 < distances_m2_.back())) return;
+    distances_m2_.back() = distance_m2;
+    for (std::size_t i = distances_m2_.size() - 1; i > 0 && distances_m2_[i] < distances_m2_[i - 1]; --i) {
+      std::swap(distances_m2_[i], distances_m2_[i - 1]);
+    }
+  }
+  /// Returns the distance to the fourth; infinity: fewer were added.
+  [[nodiscard]] float fourth_m2() const { return distances_m2_.back(); }
+
+ private:
+  std::array<float, 5> distances_m2_{};
+};
+
 /// Returns the median distance to the fourth nearest neighbour over some points of the order; 0 for fewer than five
 /// points. O(points).
 [[nodiscard]] double typical_spacing_m(std::span<const Eigen::Vector3f> positions_m, const DisplayOrder& order,
                                        const Executor& executor);
+/// Returns the root of the upper median; 0 where it is not finite.
+[[nodiscard]] double median_distance_m(std::span<float> distances_m2);
 
 }  // namespace saccade::server

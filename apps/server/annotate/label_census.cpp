@@ -98,6 +98,7 @@ nlohmann::json label_rows(const std::set<std::uint32_t>& labels, const Annotatio
                     {"instance", info.instance},
                     {"color", color_text(info.color)},
                     {"defined", annotation.label_table().defined().contains(label)},
+                    {"locked", annotation.is_locked(label)},
                     {"points", census.points(label)},
                     {"control_points", census.control_points(label)}});
   }

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <utility>
 
+#include "saccade/cloud/label_boxes.hpp"
+#include "saccade/io/clouds/label_boxes_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
@@ -45,14 +47,27 @@ struct Format {
   const char* name;
   const char* content_type;
 };
-constexpr std::array<Format, 8> kFormats{{{"pcd", "application/octet-stream"},
-                                          {"ply", "application/octet-stream"},
-                                          {"txt", "text/plain; charset=utf-8"},
-                                          {"csv", "text/csv; charset=utf-8"},
-                                          {"label", "application/octet-stream"},
-                                          {"npy", "application/octet-stream"},
-                                          {"names.txt", "text/plain; charset=utf-8"},
-                                          {"names.json", "application/json"}}};
+constexpr std::array<Format, 10> kFormats{{{"pcd", "application/octet-stream"},
+                                           {"ply", "application/octet-stream"},
+                                           {"txt", "text/plain; charset=utf-8"},
+                                           {"csv", "text/csv; charset=utf-8"},
+                                           {"label", "application/octet-stream"},
+                                           {"npy", "application/octet-stream"},
+                                           {"names.txt", "text/plain; charset=utf-8"},
+                                           {"names.json", "application/json"},
+                                           {"boxes.json", "application/json"},
+                                           {"boxes.txt", "text/plain; charset=utf-8"}}};
+
+Status write_boxes(const fs::path& file, const LoadedCloud& cloud, const LabelledPoints& labels) {
+  const Eigen::Vector3d up = box_up(cloud, file.extension() == ".json");
+  return write_label_boxes(file, label_boxes(cloud.points.positions_m, labels.labels, up), labels.names(),
+                           cloud.points.offset_m);
+}
+
+Status write_points(const fs::path& file, const LoadedCloud& cloud, const LabelledPoints& labels) {
+  SACCADE_TRY(const auto fields, cloud.fields.file());
+  return write_labels(file, *fields, labels.labels, labels.names());
+}
 
 }  // namespace
 
@@ -60,7 +75,8 @@ Result<HttpAnswer> label_file(const LoadedCloud& cloud, const LabelledPoints& la
   const auto* known =
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& one) { return format == one.name; });
   if (known == kFormats.end()) {
-    return Error{Errc::invalid_argument, "format is pcd, ply, txt, csv, label, npy, names.txt or names.json", "labels"};
+    return Error{Errc::invalid_argument,
+                 "format is pcd, ply, txt, csv, label, npy, names.txt, names.json, boxes.json or boxes.txt", "labels"};
   }
   SACCADE_TRY(const PrivateFolder folder, PrivateFolder::make());
   const fs::path file = folder.path() / (std::string{"labels."} + known->name);
@@ -69,8 +85,9 @@ Result<HttpAnswer> label_file(const LoadedCloud& cloud, const LabelledPoints& la
     error.context = "labels";  // hides the temporary path
     return error;
   };
-  const Status written =
-      is_names ? write_names(file, labels.names()) : write_labels(file, cloud.file, labels.labels, labels.names());
+  const Status written = format.starts_with("boxes.") ? write_boxes(file, cloud, labels)
+                         : is_names                   ? write_names(file, labels.names())
+                                                      : write_points(file, cloud, labels);
   if (!written) return said(written.error());
   auto content = read_file(file);
   if (!content) return said(content.error());

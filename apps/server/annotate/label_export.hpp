@@ -9,7 +9,7 @@
 
 namespace saccade::server {
 
-/// @param format  pcd, ply, txt, csv, label, npy, names.txt or names.json.
+/// @param format  pcd, ply, txt, csv, label, npy, names.txt, names.json, boxes.json or boxes.txt.
 /// @return invalid_argument for another format; errors of write_labels. The file is written in its own temporary
 /// folder, which is removed afterwards.
 [[nodiscard]] Result<HttpAnswer> label_file(const LoadedCloud& cloud, const LabelledPoints& labels,

@@ -5,36 +5,44 @@
 
 #include "saccade/annotate/annotation_error.hpp"
 #include "saccade/annotate/annotation_margin.hpp"
-#include "saccade/io/clouds/cloud_upright.hpp"
 #include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
 namespace {
 
-CloudFacts facts_of(const LoadedCloud& cloud, const DisplayOrder& order, const Executor& executor) {
+CloudFacts facts_of(const LoadedCloud& cloud) {
   const std::span<const Eigen::Vector3f> positions_m{cloud.points.positions_m};
   CloudFacts facts;
-  facts.finite = order.size();
   facts.least_m.setConstant(std::numeric_limits<float>::max());
   facts.greatest_m.setConstant(std::numeric_limits<float>::lowest());
   for (const Eigen::Vector3f& p : positions_m) {
     if (!p.allFinite()) continue;
+    ++facts.finite;
     facts.least_m = facts.least_m.cwiseMin(p);
     facts.greatest_m = facts.greatest_m.cwiseMax(p);
   }
-  facts.spacing_m = typical_spacing_m(positions_m, order, executor);
-  facts.upright = upright_of(cloud.file, positions_m);
+  facts.upright = find_upright(positions_m, cloud.upright_hints);
   return facts;
 }
 
 }  // namespace
 
-OpenCloud::OpenCloud(LoadedCloud cloud, const Executor& executor)
-    : executor_{executor},
-      cloud_{std::move(cloud)},
-      order_{cloud_.points.positions_m},
-      facts_{facts_of(cloud_, order_, executor)} {}
+OpenCloud::OpenCloud(LoadedCloud cloud, std::size_t tiles_above_points, const Executor& executor)
+    : executor_{executor}, cloud_{std::move(cloud)}, facts_{facts_of(cloud_)} {
+  const std::span<const Eigen::Vector3f> positions_m{cloud_.points.positions_m};
+  if (facts_.finite > tiles_above_points) {
+    tiles_.emplace(positions_m, executor);
+    facts_.spacing_m = tiles_->typical_spacing_m(positions_m, executor);
+  } else {
+    facts_.spacing_m = typical_spacing_m(positions_m, order(), executor);
+  }
+}
+
+const DisplayOrder& OpenCloud::order() const {
+  if (!order_) order_.emplace(cloud_.points.positions_m);
+  return *order_;
+}
 
 OpenCloud::~OpenCloud() {
   if (!builder_.joinable()) return;
@@ -48,10 +56,13 @@ Result<std::unique_ptr<OpenCloud>> OpenCloud::open(const ServedCloud& served, co
   progress.report("reading", 0, kStages);
   SACCADE_TRY(LoadedCloud loaded, load_cloud(served.cloud));
   progress.report("reading", 1, kStages);
-  std::unique_ptr<OpenCloud> cloud{new OpenCloud{std::move(loaded), executor}};
+  std::unique_ptr<OpenCloud> cloud{new OpenCloud{std::move(loaded), start.tiles_above_points, executor}};
   cloud->served_ = served;
   cloud->start_ = start;
   const PointCloud& points = cloud->cloud_.points;
+  if (!served.segments.empty()) {
+    SACCADE_TRY(cloud->segments_, read_labels(served.segments, points.positions_m.size()));
+  }
   cloud->subject_ = {served.cloud.filename().string(), points.positions_m.size(), hash_positions(points), start.graph};
   SACCADE_TRY(cloud->opened_, open_journal(served.session, cloud->subject_, start.checks));
   cloud->subject_.graph = cloud->opened_->saved.subject.graph;
@@ -68,7 +79,7 @@ void OpenCloud::count(std::span<const AnnotationAction> actions) {
 Result<OpenCloud::Built> OpenCloud::build(const Executor& executor, const Progress& progress) const {
   const PointCloud& points = cloud_.points;
   SACCADE_TRY(Neighbourhood graph,
-              in_file(Neighbourhood::build(points, subject_.graph, executor, progress), served_.cloud));
+              in_file(build_graph(points, subject_.graph, start_.room, executor, progress), served_.cloud));
   Built built{std::make_shared<const Neighbourhood>(std::move(graph)), {}};
   if (served_.seeds.empty()) return built;
   progress.report("seeds", 0, 0);
@@ -116,10 +127,14 @@ Status OpenCloud::begin_with(const std::optional<LabelSeeds>& seeds, std::span<c
     const auto done = apply({kProgramClient, seeds->actions[i]});
     if (!done) return done.error();
   }
-  std::vector<NumberedLabel> missing = missing_presets(start_.presets, annotation());
-  if (missing.empty()) return {};
-  const auto done = apply({kProgramClient, DefineLabels{std::move(missing)}});
+  const auto done = define(start_.presets);
   return done ? Status{} : done.error();
+}
+
+Result<OpenCloud::Change> OpenCloud::define(std::span<const NumberedLabel> labels) {
+  std::vector<NumberedLabel> missing = missing_presets(labels, annotation());
+  if (missing.empty()) return Change{{false, sequence_, {}, {}, {}}, {}};
+  return apply({kProgramClient, DefineLabels{std::move(missing)}});
 }
 
 Result<std::filesystem::path> OpenCloud::begin_anew() {

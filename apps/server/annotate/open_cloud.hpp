@@ -12,13 +12,16 @@
 #include <thread>
 #include <vector>
 
+#include "saccade/annotate/graph_room.hpp"
 #include "saccade/cloud/upright.hpp"
 #include "saccade/core/executor.hpp"
+#include "saccade/core/pose.hpp"
 #include "saccade/core/progress.hpp"
 #include "server/annotate/annotated_cloud.hpp"
 #include "server/annotate/display_order.hpp"
 #include "server/annotate/label_census.hpp"
 #include "server/annotate/session_start.hpp"
+#include "server/annotate/tiles.hpp"
 
 namespace saccade::server {
 
@@ -26,17 +29,21 @@ namespace saccade::server {
 struct ServedCloud {
   std::filesystem::path cloud;
   std::filesystem::path session;
-  std::filesystem::path seeds;  ///< labels that a session begins with; empty: none
-  std::filesystem::path out;    ///< destination of `save` for the labels
-  std::filesystem::path names;  ///< destination for the definitions of their numbers; empty: none
+  std::filesystem::path seeds;           ///< labels that a session begins with; empty: none
+  std::filesystem::path out;             ///< destination of `save` for the labels
+  std::filesystem::path names;           ///< destination for the definitions of their numbers; empty: none
+  std::filesystem::path segments{};      ///< segment of each point, to be accepted as labels; empty: none
+  Pose T_world_cloud{Pose::Identity()};  ///< from the coordinates of the file
 };
 
 /// Settings for the beginning of sessions.
 struct SessionStart {
   NeighbourhoodConfig graph;
+  GraphRoom room;
   std::vector<GraphCheck> checks;  ///< checks of existing sessions
   std::vector<NumberedLabel> presets;
   double seed_share{0.99};
+  std::size_t tiles_above_points{4'000'000};  ///< clouds with more finite points are kept as tiles, too
 };
 
 /// Facts about a cloud besides its points.
@@ -78,13 +85,20 @@ class OpenCloud {
                    std::function<void(std::shared_ptr<Result<Built>>)> finished);
   /// Begins the annotation with the built graph. It is read-only where seeds or presets cannot be kept.
   void begin(const Built& built);
+  /// Defines labels of which something else is known; `done` is false where there are none. Expects that it is ready.
+  [[nodiscard]] Result<Change> define(std::span<const NumberedLabel> labels);
   /// Keeps the session under another name, which it returns, and begins an empty one. Expects that it is ready. Answers
   /// io_failure; then nothing has changed.
   [[nodiscard]] Result<std::filesystem::path> begin_anew();
 
   [[nodiscard]] const LoadedCloud& cloud() const { return cloud_; }
-  [[nodiscard]] const DisplayOrder& order() const { return order_; }
+  /// Returns the order for pages without tiles. For a cloud with tiles it is made when it is first asked for.
+  [[nodiscard]] const DisplayOrder& order() const;
+  /// Returns the tiles; null: the cloud is not that large.
+  [[nodiscard]] const Tiles* tiles() const { return tiles_ ? &*tiles_ : nullptr; }
   [[nodiscard]] const CloudFacts& facts() const { return facts_; }
+  /// Returns the segment of each point, 0 for none; empty: there are no segments.
+  [[nodiscard]] std::span<const std::uint32_t> segments() const { return segments_; }
   [[nodiscard]] const NeighbourhoodConfig& graph_config() const { return subject_.graph; }
 
   [[nodiscard]] bool ready() const { return census_.has_value(); }
@@ -111,7 +125,7 @@ class OpenCloud {
   [[nodiscard]] bool can_redo(std::uint64_t client) const;
 
  private:
-  OpenCloud(LoadedCloud cloud, const Executor& executor);
+  OpenCloud(LoadedCloud cloud, std::size_t tiles_above_points, const Executor& executor);
   [[nodiscard]] Status begin_with(const std::optional<LabelSeeds>& seeds, std::span<const AnnotationAction> before);
   void begin_as_far_as_can_be(const std::optional<LabelSeeds>& seeds, std::span<const AnnotationAction> before);
   void count(std::span<const AnnotationAction> actions);
@@ -120,7 +134,9 @@ class OpenCloud {
   ServedCloud served_;
   SessionStart start_;
   LoadedCloud cloud_;
-  DisplayOrder order_;
+  mutable std::optional<DisplayOrder> order_;
+  std::optional<Tiles> tiles_;
+  std::vector<std::uint32_t> segments_;
   CloudFacts facts_;
   SessionSubject subject_;
   std::optional<AnnotationJournal::Opened> opened_;  ///< until it is ready

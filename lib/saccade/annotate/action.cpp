@@ -76,6 +76,18 @@ struct Check {
   }
   Status operator()(const DefineLabels& define) const { return check_labels(define.labels); }
   Status operator()(const ClearAnnotation& /*clear*/) const { return {}; }
+  Status operator()(const LockLabel& lock) const {
+    SACCADE_CHECK(check_label(lock.label));
+    if (!lock.locked)
+      return lock.points.empty() ? Status{} : refused("it names points to unlock; they follow the label");
+    return check_points(lock.points, points);
+  }
+  Status operator()(const PaintLabels& paint) const {
+    if (paint.points.size() != paint.labels.size()) return refused("it needs one label for each point");
+    for (const std::uint32_t label : paint.labels) SACCADE_CHECK(check_label(label));
+    if (!std::is_sorted(paint.points.begin(), paint.points.end())) return refused("its points are not in order");
+    return check_points(paint.points, points);
+  }
   Status operator()(const UndoAction& /*undo*/) const { return {}; }
   Status operator()(const RedoAction& /*redo*/) const { return {}; }
 };

@@ -51,7 +51,7 @@ struct DefineLabels {
   [[nodiscard]] bool operator==(const DefineLabels&) const = default;
 };
 
-/// Removes all control points and paint; definitions of labels stay.
+/// Removes all control points and paint; definitions and locks of labels stay.
 struct ClearAnnotation {
   [[nodiscard]] bool operator==(const ClearAnnotation&) const = default;
 };
@@ -66,8 +66,24 @@ struct RedoAction {
   [[nodiscard]] bool operator==(const RedoAction&) const = default;
 };
 
+/// Locks a label: from now on these points, which have it, keep it, whatever is painted and whichever control points
+/// are set, moved or removed; and nothing may be set or painted with it. Or unlocks it.
+struct LockLabel {
+  std::uint32_t label{1};
+  bool locked{true};
+  std::vector<std::uint32_t> points;  ///< all with the label at that time; none to unlock
+  [[nodiscard]] bool operator==(const LockLabel&) const = default;
+};
+
+/// Paints points with several labels, one each (labels that are carried from another cloud).
+struct PaintLabels {
+  std::vector<std::uint32_t> points;  ///< ascending
+  std::vector<std::uint32_t> labels;  ///< one per point
+  [[nodiscard]] bool operator==(const PaintLabels&) const = default;
+};
+
 using AnnotationChange = std::variant<SetControlPoints, RemoveControlPoints, MoveControlPoint, PaintPoints,
-                                      DefineLabels, ClearAnnotation, UndoAction, RedoAction>;
+                                      DefineLabels, ClearAnnotation, UndoAction, RedoAction, LockLabel, PaintLabels>;
 
 struct AnnotationAction {
   std::uint64_t client{0};  ///< client whose undo takes it back
@@ -76,7 +92,7 @@ struct AnnotationAction {
 };
 
 /// Answers invalid_argument unless the action names at least one point of a cloud of `points` points, each once; valid
-/// labels, each once, with valid text; and a start cost in [0, max_path). O(k log k) for k points.
+/// labels, each definition once, with valid text; and a start cost in [0, max_path). O(k log k) for k points.
 [[nodiscard]] Status check_action(const AnnotationAction& action, std::size_t points, double max_path);
 
 struct ControlPoint {
@@ -86,21 +102,22 @@ struct ControlPoint {
   [[nodiscard]] bool operator==(const ControlPoint&) const = default;
 };
 
-/// Slots that may have changed: control points and paint by point, definitions by label. Unordered, with some
+/// Slots that may have changed: control points and paint by point, definitions and locks by label. Unordered, with some
 /// duplicates.
 struct SlotChanges {
   std::vector<std::uint32_t> control_points;
   std::vector<std::uint32_t> painted;
   std::vector<std::uint32_t> labels;
+  std::vector<std::uint32_t> locks;
 };
 
 /// History of actions. The state results from the actions that are not undone, performed one after the other in order
 /// of arrival, whatever their client. An undo takes an action out of the middle, and a redo puts it back in its place.
 /// Undo and redo are per client and unlimited; a new action of a client discards what it could redo. One writer.
 ///
-/// Every action writes slots: the control point at a point, the paint on a point, the definition of a label. A slot has
-/// the value given by its latest writer that is not undone. Memory: 4 bytes per point of the cloud from the first paint
-/// on, and 12 per point that an action names.
+/// Every action writes slots: the control point at a point, the paint on a point, the definition or lock of a label. A
+/// slot has the value given by its latest writer that is not undone. Memory: 4 bytes per point of the cloud from the
+/// first paint on, and 12 per point that an action names.
 class ActionHistory {
  public:
   explicit ActionHistory(std::size_t points) : points_{points} {}
@@ -116,6 +133,9 @@ class ActionHistory {
   [[nodiscard]] std::uint32_t painted(std::uint32_t point) const;
   /// Returns nullptr for a label that is not defined.
   [[nodiscard]] const LabelInfo* definition(std::uint32_t label) const;
+
+  /// Returns the locks that hold, in order of arrival: where two name a point, the later one counts.
+  [[nodiscard]] std::vector<const LockLabel*> locks() const;
 
   [[nodiscard]] bool can_undo(std::uint64_t client) const;
   [[nodiscard]] bool can_redo(std::uint64_t client) const;
@@ -162,9 +182,10 @@ class ActionHistory {
   std::vector<PaintWrite> paint_writes_;
   std::vector<std::uint32_t> paint_heads_;  ///< latest write by point; empty before the first
   std::map<std::uint32_t, std::vector<LabelWrite>> label_writers_;
-  std::set<std::uint32_t> clears_;  ///< active ClearAnnotation
-  std::set<std::uint32_t> moves_;   ///< active MoveControlPoint
-  std::set<std::uint32_t> stale_;   ///< active moves that may find another control point than before
+  std::map<std::uint32_t, std::vector<std::uint32_t>> lock_writers_;  ///< entries by label, ascending
+  std::set<std::uint32_t> clears_;                                    ///< active ClearAnnotation
+  std::set<std::uint32_t> moves_;                                     ///< active MoveControlPoint
+  std::set<std::uint32_t> stale_;  ///< active moves that may find another control point than before
 };
 
 }  // namespace saccade

@@ -26,6 +26,21 @@ void for_each_control_slot(const AnnotationChange& change, F&& f) {
   }
 }
 
+/// Returns the points that an action paints; nullptr: it paints none.
+const std::vector<std::uint32_t>* painted_points(const AnnotationChange& change) {
+  if (const auto* paint = std::get_if<PaintPoints>(&change)) return &paint->points;
+  if (const auto* paint = std::get_if<PaintLabels>(&change)) return &paint->points;
+  return nullptr;
+}
+
+/// Returns the paint that an action gives to one of its points.
+std::uint32_t paint_on(const AnnotationChange& change, std::uint32_t point) {
+  if (const auto* paint = std::get_if<PaintPoints>(&change)) return paint->label;
+  const auto& paint = std::get<PaintLabels>(change);
+  const auto at = std::lower_bound(paint.points.begin(), paint.points.end(), point) - paint.points.begin();
+  return paint.labels[static_cast<std::size_t>(at)];
+}
+
 }  // namespace
 
 std::optional<SlotChanges> ActionHistory::push(AnnotationAction action) {
@@ -53,10 +68,10 @@ void ActionHistory::keep(AnnotationAction action, SlotChanges& changes) {
   const auto number = static_cast<std::uint32_t>(entries_.size());
   SACCADE_EXPECTS(entries_.size() < kNone);
   for_each_control_slot(action.change, [&](std::uint32_t point) { control_writers_[point].push_back(number); });
-  if (const auto* paint = std::get_if<PaintPoints>(&action.change)) {
-    SACCADE_EXPECTS(paint_writes_.size() + paint->points.size() < kNone);
+  if (const std::vector<std::uint32_t>* painted = painted_points(action.change)) {
+    SACCADE_EXPECTS(paint_writes_.size() + painted->size() < kNone);
     if (paint_heads_.empty()) paint_heads_.assign(points_, kNone);
-    for (const std::uint32_t point : paint->points) {
+    for (const std::uint32_t point : *painted) {
       paint_writes_.push_back({number, paint_heads_[point]});
       paint_heads_[point] = static_cast<std::uint32_t>(paint_writes_.size() - 1);
     }
@@ -65,6 +80,7 @@ void ActionHistory::keep(AnnotationAction action, SlotChanges& changes) {
       label_writers_[define->labels[i].number].push_back({number, i});
     }
   }
+  if (const auto* lock = std::get_if<LockLabel>(&action.change)) lock_writers_[lock->label].push_back(number);
   entries_.push_back({std::move(action), false, {}});
   set_active(number, true, changes);
 }
@@ -73,9 +89,11 @@ void ActionHistory::set_active(std::uint32_t entry, bool active, SlotChanges& ch
   entries_[entry].active = active;
   std::visit(Overloaded{
                  [&](const PaintPoints& paint) { changes.painted = paint.points; },
+                 [&](const PaintLabels& paint) { changes.painted = paint.points; },
                  [&](const DefineLabels& define) {
                    for (const NumberedLabel& label : define.labels) changes.labels.push_back(label.number);
                  },
+                 [&](const LockLabel& lock) { changes.locks.push_back(lock.label); },
                  [&](const MoveControlPoint&) { set_move_active(entry, active, changes); },
                  [&](const ClearAnnotation&) { set_clear_active(entry, active, changes); },
                  [&](const auto&) {
@@ -109,6 +127,7 @@ void ActionHistory::set_clear_active(std::uint32_t entry, bool active, SlotChang
   stale_.insert(moves_.upper_bound(entry), moves_.end());
   changes = written();
   changes.labels.clear();
+  changes.locks.clear();
 }
 
 /// Moves take the value that their source slot has just before them; a change there propagates to their target.
@@ -171,7 +190,7 @@ std::uint32_t ActionHistory::painted(std::uint32_t point) const {
   for (std::uint32_t write = paint_heads_[point]; write != kNone; write = paint_writes_[write].previous) {
     const std::uint32_t entry = paint_writes_[write].entry;
     if (clear && entry < *clear) break;
-    if (entries_[entry].active) return std::get<PaintPoints>(entries_[entry].action.change).label;
+    if (entries_[entry].active) return paint_on(entries_[entry].action.change, point);
   }
   return kNoLabel;
 }
@@ -185,6 +204,20 @@ const LabelInfo* ActionHistory::definition(std::uint32_t label) const {
   return &std::get<DefineLabels>(entries_[latest->entry].action.change).labels[latest->index].info;
 }
 
+std::vector<const LockLabel*> ActionHistory::locks() const {
+  std::vector<std::uint32_t> held;
+  for (const auto& [label, writers] : lock_writers_) {
+    const auto latest =
+        std::find_if(writers.rbegin(), writers.rend(), [this](std::uint32_t entry) { return entries_[entry].active; });
+    const bool is_held = latest != writers.rend() && std::get<LockLabel>(entries_[*latest].action.change).locked;
+    if (is_held) held.push_back(*latest);
+  }
+  std::sort(held.begin(), held.end());
+  std::vector<const LockLabel*> locks;
+  for (const std::uint32_t entry : held) locks.push_back(&std::get<LockLabel>(entries_[entry].action.change));
+  return locks;
+}
+
 SlotChanges ActionHistory::written() const {
   SlotChanges all;
   for (const auto& [point, writers] : control_writers_) all.control_points.push_back(point);
@@ -192,6 +225,7 @@ SlotChanges ActionHistory::written() const {
     if (paint_heads_[point] != kNone) all.painted.push_back(point);
   }
   for (const auto& [label, writers] : label_writers_) all.labels.push_back(label);
+  for (const auto& [label, writers] : lock_writers_) all.locks.push_back(label);
   return all;
 }
 

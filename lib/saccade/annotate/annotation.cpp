@@ -41,9 +41,11 @@ Status Annotation::validate(const AnnotationAction& action) const {
     }
     return {};
   };
+  SACCADE_CHECK(check_locks(action));
   const auto is_control_point = [this](std::uint32_t point) { return control_.contains(point); };
   if (const auto* set = std::get_if<SetControlPoints>(&action.change)) return check_joined(set->points);
   if (const auto* paint = std::get_if<PaintPoints>(&action.change)) return check_joined(paint->points);
+  if (const auto* paint = std::get_if<PaintLabels>(&action.change)) return check_joined(paint->points);
   if (const auto* remove = std::get_if<RemoveControlPoints>(&action.change)) {
     if (std::none_of(remove->points.begin(), remove->points.end(), is_control_point)) {
       return cannot("there is no control point to remove");
@@ -54,6 +56,32 @@ Status Annotation::validate(const AnnotationAction& action) const {
       return cannot("point " + std::to_string(move->from) + " is not a control point, so it cannot be moved");
     }
     return check_joined({&move->to, 1});
+  }
+  return {};
+}
+
+Status Annotation::check_locks(const AnnotationAction& action) const {
+  if (locks_.empty()) return {};
+  const auto check_label = [this](std::uint32_t label) -> Status {
+    if (!is_locked(label)) return {};
+    return cannot("label " + std::to_string(label) + " is locked; unlock it first");
+  };
+  const auto check_place = [this](std::uint32_t point) -> Status {
+    if (locked(point) == kNoLabel) return {};
+    return cannot("point " + std::to_string(point) + " belongs to the locked label " + std::to_string(locked(point)));
+  };
+  if (const auto* set = std::get_if<SetControlPoints>(&action.change)) {
+    SACCADE_CHECK(check_label(set->label));
+    for (const std::uint32_t point : set->points) SACCADE_CHECK(check_place(point));
+  } else if (const auto* paint = std::get_if<PaintPoints>(&action.change)) {
+    SACCADE_CHECK(check_label(paint->label));
+    for (const std::uint32_t point : paint->points) SACCADE_CHECK(check_place(point));
+  } else if (const auto* labels = std::get_if<PaintLabels>(&action.change)) {
+    for (const std::uint32_t label : labels->labels) SACCADE_CHECK(check_label(label));
+    for (const std::uint32_t point : labels->points) SACCADE_CHECK(check_place(point));
+  } else if (const auto* move = std::get_if<MoveControlPoint>(&action.change)) {
+    if (const auto moved = control_point(move->from)) SACCADE_CHECK(check_label(moved->label));
+    return check_place(move->to);
   }
   return {};
 }
@@ -79,8 +107,25 @@ void Annotation::change_slots(const SlotChanges& slots) {
   if (!slots.painted.empty() && painted_.empty()) painted_.assign(labels_.size(), kNoLabel);
   for (const std::uint32_t point : slots.painted) painted_[point] = history_.painted(point);
   suspects_ = slots.painted;
+  change_locks(slots.locks);
   change_control_points(slots.control_points);
   relabel();
+}
+
+void Annotation::change_locks(std::span<const std::uint32_t> slots) {
+  if (slots.empty()) return;
+  const std::vector<const LockLabel*> held = history_.locks();
+  std::vector<std::uint32_t> now(labels_.size(), kNoLabel);
+  locks_.clear();
+  for (const LockLabel* lock : held) {
+    locks_.insert(lock->label);
+    for (const std::uint32_t point : lock->points) now[point] = lock->label;
+  }
+  for (std::uint32_t point = 0; point < now.size(); ++point) {
+    if (now[point] != locked(point)) suspects_.push_back(point);
+  }
+  locked_ = std::move(now);
+  for (const std::uint32_t label : in_order(slots)) changed_labels_.push_back(label);
 }
 
 void Annotation::change_definitions(std::span<const std::uint32_t> slots) {
@@ -150,7 +195,8 @@ void Annotation::relabel() {
   executor_.parallel_for(suspects_.size(), kSuspectsAtOnce, [this](std::size_t begin, std::size_t end) {
     std::optional<ControlPoint> last;  // consecutive points mostly share one
     for (std::size_t i = begin; i < end; ++i) {
-      labels_now_[i] = painted(suspects_[i]);
+      labels_now_[i] = locked(suspects_[i]);
+      if (labels_now_[i] == kNoLabel) labels_now_[i] = painted(suspects_[i]);
       if (labels_now_[i] != kNoLabel) continue;
       const std::optional<std::uint32_t> root = forest_.root_of(suspects_[i]);
       if (!root) continue;

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -23,20 +24,22 @@ struct Applied {
   std::uint64_t sequence{0};                      ///< number of actions so far, including this one
   std::span<const std::uint32_t> points;          ///< points with a new label
   std::span<const std::uint32_t> control_points;  ///< points that became, ceased to be, or changed as control points
-  std::span<const std::uint32_t> labels;          ///< labels whose definition changed
+  std::span<const std::uint32_t> labels;          ///< labels whose definition or lock changed
 };
 
 /// Annotation in two layers: control points, whose trees divide the points among them (ShortestPathForest), and paint
-/// above, which labels points individually. A point has the label of its paint; without paint that of its tree's
-/// control point; without a tree none. With several clients, actions count in order of arrival, and undo is per client
-/// (ActionHistory). The state depends on the actions alone. One writer; about 40 bytes per point.
+/// above, which labels points individually. A point has the label that is locked on it; without a lock that of its
+/// paint; without paint that of its tree's control point; without a tree none. With several clients, actions count in
+/// order of arrival, and undo is per client (ActionHistory). The state depends on the actions alone. One writer; about
+/// 40 bytes per point.
 class Annotation {
  public:
   /// Changes of many points use the executor's threads; their number never changes the state.
   explicit Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood, const Executor& executor = {});
 
   /// Answers invalid_argument as check_action, and for control points and paint on points without neighbours, such as
-  /// those that are not finite; for removing or moving a control point that does not exist.
+  /// those that are not finite; for setting, moving and painting with a locked label, and on points of one; for
+  /// removing or moving a control point that does not exist.
   [[nodiscard]] Status validate(const AnnotationAction& action) const;
   /// Applies an action. Expects one that validate accepts. O(points whose tree may change), as ShortestPathForest's add
   /// and remove.
@@ -52,6 +55,9 @@ class Annotation {
   [[nodiscard]] std::uint32_t painted(std::uint32_t point) const {
     return painted_.empty() ? kNoLabel : painted_[point];
   }
+  /// Returns the label that is locked on a point; kNoLabel: none.
+  [[nodiscard]] std::uint32_t locked(std::uint32_t point) const { return locked_.empty() ? kNoLabel : locked_[point]; }
+  [[nodiscard]] bool is_locked(std::uint32_t label) const { return locks_.contains(label); }
   /// Returns the number of points by label, for labels that have some.
   [[nodiscard]] const std::map<std::uint32_t, std::size_t>& counts() const { return counts_; }
   /// Returns the control points in ascending order of points.
@@ -69,6 +75,8 @@ class Annotation {
     std::size_t points{0};
   };
 
+  [[nodiscard]] Status check_locks(const AnnotationAction& action) const;
+  void change_locks(std::span<const std::uint32_t> slots);
   void change_slots(const SlotChanges& slots);
   void change_control_points(std::span<const std::uint32_t> slots);
   void change_forest(const std::vector<ControlPoint>& placed, const std::vector<std::uint32_t>& removed);
@@ -82,6 +90,8 @@ class Annotation {
   LabelTable table_;
   std::unordered_map<std::uint32_t, ControlPoint> control_;
   std::vector<std::uint32_t> painted_;  ///< empty before the first paint
+  std::vector<std::uint32_t> locked_;   ///< empty before the first lock
+  std::set<std::uint32_t> locks_;       ///< locked labels
   std::vector<std::uint32_t> labels_;
   std::map<std::uint32_t, std::size_t> counts_;
   std::vector<std::uint32_t> suspects_;    ///< points whose label may change by this action, with some duplicates

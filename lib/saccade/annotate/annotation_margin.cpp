@@ -81,7 +81,7 @@ std::vector<float> label_margins(const Annotation& annotation) {
   const LabelPaths paths = label_paths(annotation.forest(), labels);
   std::vector<float> margins(paths.own.size());
   for (std::uint32_t point = 0; point < margins.size(); ++point) {
-    const bool is_painted = annotation.painted(point) != kNoLabel;
+    const bool is_painted = annotation.painted(point) != kNoLabel || annotation.locked(point) != kNoLabel;
     margins[point] = is_painted ? 1.0F : label_margin(paths.own[point], paths.other[point]);
   }
   return margins;

@@ -33,7 +33,7 @@ struct LabelPaths {
   return 1.0F - static_cast<float>(own) / static_cast<float>(other);
 }
 
-/// Returns the margin of each point's label; 1 where it is painted. Not in the thesis. Cost as label_paths.
+/// Returns the margin of each point's label; 1 where it is painted or locked. Not in the thesis. Cost as label_paths.
 [[nodiscard]] std::vector<float> label_margins(const Annotation& annotation);
 
 struct BestClick {
@@ -42,10 +42,11 @@ struct BestClick {
   double gain{0.0};               ///< gain in points
 };
 
-/// Finds the best next control point. A point that is not painted has the doubt d = 1 − margin. A new control point
-/// that takes a point from a path ω by a path ω' settles it by d⁸ (1 − ω' / ω); the gain is the sum. Using d alone, or
-/// counting points alone, leads to far worse clicks (docs/guides/annotation.md). Candidates are the centres
-/// (region_centre) of the most doubtful regions of those points that carry half of all doubt.
+/// Finds the best next control point. A point that is neither painted nor locked has the doubt d = 1 − margin. A new
+/// control point that takes a point from a path ω by a path ω' settles it by d⁸ (1 − ω' / ω); the gain is the sum.
+/// Using d alone, or counting points alone, leads to far worse clicks (docs/guides/annotation.md). With strong_borders
+/// a click begins with the start cost of a guarded_click. Candidates are the centres (region_centre) of the most
+/// doubtful regions of those points that carry half of all doubt.
 /// @param margins  label_margins of this annotation.
 /// @param ends     cloud_ends, or empty.
 /// @return nullopt: nothing is in doubt. O(points + edges visited by trials, which are bounded), one thread.

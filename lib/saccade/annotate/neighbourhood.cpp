@@ -33,7 +33,7 @@ class Nodes {
   Nodes(const PointCloud& cloud, const NearestNeighbours& neighbours, const NeighbourhoodConfig& config,
         const Executor& executor)
       : neighbours_{neighbours},
-        nodes_(neighbours.order.size()),
+        nodes_(neighbours.order.size(), neighbours.nodes.get_allocator()),
         units_per_m_{config.position_weight_per_m / config.max_path * kPathUnits},
         units_per_normal_{config.normal_weight / config.max_path * kPathUnits},
         units_per_color_{config.color_weight / config.max_path * kPathUnits},
@@ -61,6 +61,7 @@ class Nodes {
     if (adapt_to_density_ && !nodes_.empty()) median_spacing_m_ = median_spacing_m();
   }
 
+  [[nodiscard]] std::size_t size() const { return nodes_.size(); }
   /// Returns a mask: bit n is set when the node's neighbour n does not have it among its own.
   [[nodiscard]] std::uint64_t one_sided(std::uint32_t node) const {
     std::uint64_t bits{0};
@@ -124,7 +125,7 @@ class Nodes {
   }
 
   const NearestNeighbours& neighbours_;
-  UninitializedVector<Node> nodes_;
+  DiskVector<Node> nodes_;
   std::vector<Eigen::Vector3f> colors_;
   double median_spacing_m_{0.0};
   double units_per_m_;
@@ -134,27 +135,58 @@ class Nodes {
   bool normals_are_oriented_;
 };
 
+/// One bit per node and neighbour, as packed as they can be. Chunks of kNodeGrain nodes share no word.
+class EdgeBits {
+ public:
+  EdgeBits(std::size_t nodes, std::size_t per_node)
+      : per_node_{per_node}, words_(nodes * per_node / kWord + 2, std::uint64_t{0}) {}
+
+  void set(std::size_t node, std::uint64_t bits) {
+    const auto [word, shift] = place(node);
+    words_[word] |= bits << shift;
+    if (shift + per_node_ > kWord) words_[word + 1] |= bits >> (kWord - shift);
+  }
+  [[nodiscard]] std::uint64_t of(std::size_t node) const {
+    const auto [word, shift] = place(node);
+    std::uint64_t bits = words_[word] >> shift;
+    if (shift + per_node_ > kWord) bits |= words_[word + 1] << (kWord - shift);
+    return per_node_ == kWord ? bits : bits & ((std::uint64_t{1} << per_node_) - 1);
+  }
+
+ private:
+  static constexpr std::size_t kWord{64};
+  static_assert(kNodeGrain % kWord == 0);
+
+  [[nodiscard]] std::pair<std::size_t, std::size_t> place(std::size_t node) const {
+    return {node * per_node_ / kWord, node * per_node_ % kWord};
+  }
+
+  std::size_t per_node_;
+  std::vector<std::uint64_t> words_;
+};
+
 struct Joined {
   std::vector<std::uint32_t> starts;
-  UninitializedVector<Neighbourhood::Edge> edges;
+  DiskVector<Neighbourhood::Edge> edges;
 };
 
 /// Makes edges symmetric: a node's own nearest, then, in ascending order, the others that have it among theirs.
 Joined join(const NearestNeighbours& neighbours, std::size_t points, const Nodes& nodes, const Executor& executor) {
-  const std::size_t size = neighbours.order.size();
+  const std::size_t size = nodes.size();
   const std::size_t k = neighbours.count;
   std::vector<std::uint32_t> others(size, 0);
-  UninitializedVector<std::uint64_t> one_sided_of(size);
+  EdgeBits one_sided{size, k};
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
-      one_sided_of[node] = nodes.one_sided(node);
-      for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
+      const std::uint64_t found = nodes.one_sided(node);
+      one_sided.set(node, found);
+      for (std::uint64_t bits = found; bits != 0; bits &= bits - 1) {
         const std::uint32_t other = neighbours.of(node)[static_cast<std::size_t>(std::countr_zero(bits))];
         std::atomic_ref{others[other]}.fetch_add(1, std::memory_order_relaxed);
       }
     }
   });
-  Joined joined;
+  Joined joined{{}, DiskVector<Neighbourhood::Edge>(neighbours.nodes.get_allocator())};
   joined.starts.resize(points + 1);
   for (std::size_t i = 0; i < size; ++i) {
     joined.starts[i + 1] = joined.starts[i] + static_cast<std::uint32_t>(k) + others[i];
@@ -166,7 +198,7 @@ Joined join(const NearestNeighbours& neighbours, std::size_t points, const Nodes
       Neighbourhood::Edge* edges = joined.edges.data() + joined.starts[node];
       const std::span<const std::uint32_t> nearest = neighbours.of(node);
       for (std::size_t n = 0; n < k; ++n) edges[n] = {nearest[n], nodes.cost(node, nearest[n])};
-      for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
+      for (std::uint64_t bits = one_sided.of(node); bits != 0; bits &= bits - 1) {
         const Neighbourhood::Edge& edge = edges[std::countr_zero(bits)];
         const std::uint32_t left = std::atomic_ref{others[edge.node]}.fetch_sub(1, std::memory_order_relaxed);
         joined.edges[joined.starts[edge.node] + k + left - 1] = {node, edge.cost};
@@ -226,8 +258,15 @@ Status NeighbourhoodConfig::validate() const {
   return {};
 }
 
+std::size_t Neighbourhood::building_bytes(std::size_t points, const NeighbourhoodConfig& config) {
+  constexpr std::size_t kPerNeighbour{13};
+  constexpr std::size_t kPerPoint{54};
+  return points * (kPerNeighbour * static_cast<std::size_t>(config.neighbours) + kPerPoint);
+}
+
 Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const NeighbourhoodConfig& config,
-                                           const Executor& executor, const Progress& progress) {
+                                           const Executor& executor, const Progress& progress,
+                                           std::shared_ptr<const DiskMemory> disk) {
   constexpr std::size_t kStages{3};
   SACCADE_CHECK(config.validate());
   SACCADE_CHECK(cloud.validate());
@@ -237,8 +276,8 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
                  "neighbourhood"};
   }
   progress.report("graph", 0, kStages);
-  const NearestNeighbours neighbours =
-      nearest_neighbours(cloud.positions_m, static_cast<std::size_t>(config.neighbours), executor);
+  NearestNeighbours neighbours =
+      nearest_neighbours(cloud.positions_m, static_cast<std::size_t>(config.neighbours), executor, std::move(disk));
   if (progress.cancelled()) return cancelled_build();
   progress.report("graph", 1, kStages);
   const Nodes nodes{cloud, neighbours, config, executor};
@@ -247,12 +286,13 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
   Neighbourhood graph;
   graph.config_ = config;
   const std::size_t size = cloud.positions_m.size();
-  graph.point_of_ = neighbours.order;
+  std::vector<Eigen::Vector3f>{}.swap(neighbours.positions_m);  // the nodes have them: memory is at its peak in join
+  graph.point_of_ = std::move(neighbours.order);
   graph.node_of_.resize(size);
   if (graph.point_of_.size() < size) std::fill(graph.node_of_.begin(), graph.node_of_.end(), kNoNode);
-  executor.parallel_for(neighbours.order.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(nodes.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t node = begin; node < end; ++node) {
-      graph.node_of_[neighbours.order[node]] = static_cast<std::uint32_t>(node);
+      graph.node_of_[graph.point_of_[node]] = static_cast<std::uint32_t>(node);
     }
   });
   if (graph.point_of_.size() < size) {

@@ -2,10 +2,12 @@
 #include "saccade/annotate/annotation_margin.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "saccade/annotate/annotation_error.hpp"
+#include "saccade/annotate/click_start.hpp"
 #include "saccade/annotate/internal/path_buckets.hpp"
 
 namespace saccade {
@@ -22,7 +24,8 @@ std::vector<float> doubts(const Annotation& annotation, std::span<const float> m
   const Neighbourhood& graph = annotation.forest().neighbourhood();
   std::vector<float> doubts(margins.size(), 0.0F);
   for (std::uint32_t point = 0; point < doubts.size(); ++point) {
-    if (graph.edges(graph.node_of(point)).empty() || annotation.painted(point) != kNoLabel) continue;
+    const bool is_fixed = annotation.painted(point) != kNoLabel || annotation.locked(point) != kNoLabel;
+    if (is_fixed || graph.edges(graph.node_of(point)).empty()) continue;
     doubts[point] = 1.0F - margins[point];
   }
   return doubts;
@@ -62,7 +65,7 @@ std::vector<ErrorRegion> doubtful_regions(const Neighbourhood& graph, const std:
 class Trials {
  public:
   Trials(const ShortestPathForest& forest, std::span<const float> doubts)
-      : graph_{forest.neighbourhood()}, queue_{graph_}, nodes_(doubts.size()) {
+      : forest_{forest}, graph_{forest.neighbourhood()}, queue_{graph_}, nodes_(doubts.size()) {
     for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
       const std::uint32_t point = graph_.point_of(node);
       const std::uint32_t own = forest.path_units(point);
@@ -72,7 +75,7 @@ class Trials {
 
   double gain(std::uint32_t point) {
     taken_.clear();
-    reach(0, graph_.node_of(point));
+    reach(start(point), graph_.node_of(point));
     queue_.drain([&](std::uint32_t path, std::uint32_t node) {
       if (nodes_[node].path != path) return;  // a shorter path came in between
       for (const Neighbourhood::Edge& edge : graph_.edges(node)) {
@@ -105,6 +108,13 @@ class Trials {
     return squared * squared * squared * squared;
   }
 
+  /// Returns where the path of a click begins, as guarded_click has it for a label with other control points.
+  [[nodiscard]] std::uint32_t start(std::uint32_t point) const {
+    if (!graph_.config().strong_borders) return 0;
+    const double unit = graph_.config().max_path / kPathUnits;
+    return static_cast<std::uint32_t>(std::lround(click_start(forest_, point) / unit));
+  }
+
   void reach(std::uint32_t path, std::uint32_t node) {
     Node& reached = nodes_[node];
     if (path >= reached.path) return;
@@ -113,6 +123,7 @@ class Trials {
     queue_.push(path, node);
   }
 
+  const ShortestPathForest& forest_;
   const Neighbourhood& graph_;
   PathBuckets queue_;
   std::vector<Node> nodes_;

@@ -4,6 +4,7 @@
 // that a tool draws on it. select_points, select_around: the points in that shape. Thesis §4.2.2.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -90,10 +91,18 @@ struct SelectionView {
   int width{1280};       ///< px, 1 to 8192
   int height{720};       ///< px, 1 to 8192
   int point_size_px{3};  ///< edge of the square as which a point is drawn, 1 to 64
+  /// Clip planes (a, b, c, d), up to 16: points with a x + b y + c z + d < 0 for one of them are not in view.
+  std::vector<Eigen::Vector4d> planes{};
 
   /// Answers invalid_argument for sizes out of range, and for a matrix that is not finite or does not map space to a
   /// view.
   [[nodiscard]] Status validate() const;
+  /// Tells whether no clip plane takes a point out of the view.
+  [[nodiscard]] bool is_inside(const Eigen::Vector3f& p_world) const {
+    return std::all_of(planes.begin(), planes.end(), [&](const Eigen::Vector4d& plane) {
+      return plane.head<3>().dot(p_world.cast<double>()) + plane.w() >= 0.0;
+    });
+  }
 };
 
 /// Position of a point on the screen; NaN in every member where it is not in view.
@@ -120,8 +129,8 @@ class ScreenProjection {
     const double w = row(3);
     const double u_px = (row(0) / w + 1.0) * half_width_;
     const double v_px = (1.0 - row(1) / w) * half_height_;
-    const bool in_view = w > 0.0 && clip_z >= -w && clip_z <= w && u_px >= 0.0 && u_px < 2.0 * half_width_ &&
-                         v_px >= 0.0 && v_px < 2.0 * half_height_;
+    const bool in_view = view_.is_inside(p_world) && w > 0.0 && clip_z >= -w && clip_z <= w && u_px >= 0.0 &&
+                         u_px < 2.0 * half_width_ && v_px >= 0.0 && v_px < 2.0 * half_height_;
     if (!in_view) return {kNone, kNone, static_cast<float>(kNone)};
     return {u_px, v_px, static_cast<float>((perspective_ ? w : clip_z) * m_per_clip_)};
   }
@@ -133,6 +142,7 @@ class ScreenProjection {
  private:
   static constexpr double kNone{std::numeric_limits<double>::quiet_NaN()};
 
+  SelectionView view_;
   Eigen::Matrix4d clip_world_;
   Eigen::Matrix3d world_clip_;  ///< from x, y and the row of the depth
   double half_width_;

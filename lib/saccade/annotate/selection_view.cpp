@@ -36,6 +36,13 @@ Status SelectionView::validate() const {
     return Error{Errc::invalid_argument, "point_size_px must be 1 to " + std::to_string(kLargestPoint),
                  "selection view"};
   }
+  constexpr std::size_t kMostPlanes{16};
+  const bool are_planes =
+      planes.size() <= kMostPlanes &&
+      std::all_of(planes.begin(), planes.end(), [](const auto& plane) { return plane.allFinite(); });
+  if (!are_planes) {
+    return Error{Errc::invalid_argument, "a view may have 16 clip planes, of finite numbers", "selection view"};
+  }
   const bool is_view = clip_world.allFinite() && (is_perspective(clip_world) || clip_world(3, 3) > 0.0) &&
                        seen_axes(clip_world).inverse().allFinite();
   if (!is_view) {
@@ -46,7 +53,8 @@ Status SelectionView::validate() const {
 }
 
 ScreenProjection::ScreenProjection(const SelectionView& view)
-    : clip_world_{view.clip_world},
+    : view_{view},
+      clip_world_{view.clip_world},
       world_clip_{seen_axes(view.clip_world).inverse()},
       half_width_{0.5 * view.width},
       half_height_{0.5 * view.height},

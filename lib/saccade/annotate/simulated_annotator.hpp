@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "saccade/annotate/annotation_error.hpp"
@@ -25,6 +26,7 @@ struct SimulatedClick {
   std::uint32_t label{0};
   double add_ms{0.0};     ///< time of the forest alone
   AnnotationScore score;  ///< score after the click
+  bool segment{false};    ///< a whole segment was painted, instead of a control point set
 };
 
 /// Annotator by the usual protocol of interactive segmentation. The next click is at the centre of the largest region
@@ -39,6 +41,11 @@ class SimulatedAnnotator {
   [[nodiscard]] static Result<SimulatedAnnotator> create(std::shared_ptr<const Neighbourhood> neighbourhood,
                                                          const PointCloud& cloud, std::vector<std::uint32_t> truth);
 
+  /// Offers segments, one per point, kNoLabel for none; expects as many as points. From now on a click accepts the
+  /// whole segment at its point (PaintPoints), if at least 95 % of the segment's points with a true label have the
+  /// wanted one. Errors inside accepted segments stay.
+  void offer_segments(std::vector<std::uint32_t> segments);
+
   /// Clicks. nullopt: nothing is wrong any more, or the wrong points are control points already.
   std::optional<SimulatedClick> next();
 
@@ -49,7 +56,13 @@ class SimulatedAnnotator {
   SimulatedAnnotator(std::shared_ptr<const Neighbourhood> neighbourhood, std::vector<std::uint32_t> truth,
                      std::vector<std::uint8_t> ends);
 
+  [[nodiscard]] bool accepts(std::uint32_t segment, std::uint32_t label) const;
+  void paint(std::uint32_t segment, std::uint32_t label);
+  void set(SimulatedClick& click);
+
   ShortestPathForest forest_;
+  std::vector<std::uint32_t> segments_;        ///< empty: none are offered
+  std::unordered_set<std::uint32_t> painted_;  ///< accepted segments
   std::vector<std::uint32_t> truth_;
   std::vector<std::uint8_t> ends_;
   std::unordered_map<std::uint32_t, std::uint32_t> label_of_root_;

@@ -80,10 +80,10 @@ std::vector<Eigen::Vector3f> estimate_normals(const NearestNeighbours& neighbour
   executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) positions_m[i] << neighbours.positions_m[i], 0.0F;
   });
-  UninitializedVector<Moments> around;
+  DiskVector<Moments> around(neighbours.nodes.get_allocator());
   for (int round = 0; round < rounds; ++round) {
     const bool is_last = round + 1 == rounds;
-    UninitializedVector<Moments> wider(is_last ? 0 : size);
+    DiskVector<Moments> wider(is_last ? 0 : size, around.get_allocator());
     executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
       Block block;
       for (std::size_t first = begin; first < end; first += kBlock) {

@@ -40,10 +40,10 @@ UninitializedVector<LeafTree::IndexedPoint> usable_sites(std::span<const Eigen::
 }  // namespace
 
 NearestNeighbours nearest_neighbours(std::span<const Eigen::Vector3f> positions_m, std::size_t k,
-                                     const Executor& executor) {
+                                     const Executor& executor, std::shared_ptr<const DiskMemory> disk) {
   SACCADE_EXPECTS(k >= 1 && k <= kMostNeighbours && positions_m.size() < std::numeric_limits<std::uint32_t>::max());
   UninitializedVector<LeafTree::IndexedPoint> sites = usable_sites(positions_m, executor);
-  NearestNeighbours result;
+  NearestNeighbours result{{}, {}, 0, DiskVector<std::uint32_t>(DiskAllocator<std::uint32_t>{std::move(disk)})};
   if (sites.empty()) return result;
   const LeafTree tree{std::move(sites), executor};
   const std::size_t size = tree.sites().size();

@@ -11,17 +11,31 @@
 #include "saccade/cuda/device.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/views/surface_device.hpp"
 #include "saccade/views/view_gain.hpp"
 
 namespace saccade {
 
-/// Map on a GPU. Its voxels equal those of TsdfMap to the bit after the same images, and its gains those of
-/// evaluate_views. Colours are not fused. One thread at a time.
+namespace internal::cuda {
+struct GpuMapMaker;
+}
+
+/// Traffic of a GPU since it was opened.
+struct GpuTraffic {
+  std::uint64_t bytes_sent{0};
+  std::uint64_t bytes_read{0};
+  std::uint64_t kernels{0};
+};
+
+/// Map on a GPU. Its voxels equal those of TsdfMap to the bit after the same images, its gains those of evaluate_views,
+/// and what it does as a SurfaceDevice that of the CPU. Colours are not fused. One thread at a time.
 ///
 /// The map lies in a flat table of bricks that grows with what is seen, and in pools of the bricks whose voxels differ,
-/// 2.1 KiB each. Every call answers unavailable where the GPU's memory does not suffice or the GPU is lost; the map is
-/// then undefined, and snapshot() of an earlier moment is what is left.
-class GpuMap {
+/// 2.1 KiB each. Only bricks that changed go to the GPU, and come back. Where its memory does not suffice for the map,
+/// the GPU holds the bricks that the work at hand can meet, and the host the rest. Where it does not suffice for these
+/// either, the call answers unavailable, and the map stays as it was: snapshot() returns it whole. A GPU that is lost
+/// takes with it what it fused since the last snapshot(), which then answers unavailable like every other call.
+class GpuMap final : public SurfaceDevice {
  public:
   /// Opens the first GPU. Answers unavailable where there is none; invalid_argument for an invalid configuration.
   [[nodiscard]] static Result<GpuMap> create(const TsdfConfig& config);
@@ -31,7 +45,7 @@ class GpuMap {
                                                       std::size_t memory_bytes = ~std::size_t{0});
   GpuMap(GpuMap&&) noexcept;
   GpuMap& operator=(GpuMap&&) noexcept;
-  ~GpuMap();
+  ~GpuMap() override;
 
   [[nodiscard]] const TsdfConfig& config() const;
 
@@ -40,9 +54,12 @@ class GpuMap {
   [[nodiscard]] Result<FusionStats> integrate(const PinholeCamera& camera, const DepthImage& depth,
                                               const Pose& T_world_camera);
 
-  /// Replaces the content. Answers unsupported for a map whose bricks span more than 2²⁷ bricks of space. O(bricks).
+  /// Replaces the content. O(bricks that differ from those the GPU holds). Answers unsupported for a map of which
+  /// sectors are out of memory.
   [[nodiscard]] Status assign(const TsdfSnapshot& map);
-  /// Copies the content back, without colours. O(bricks).
+  [[nodiscard]] Status follow(const TsdfSnapshot& map, const Executor& executor) override;
+  /// Returns the content, without colours of bricks that the GPU changed. O(bricks that it changed since the last
+  /// call).
   [[nodiscard]] Result<TsdfSnapshot> snapshot() const;
 
   /// Casts a ray per pixel to the surface, as saccade::raycast does; without colours. O(pixels · bricks along the ray).
@@ -54,8 +71,19 @@ class GpuMap {
   [[nodiscard]] Result<GainResult> evaluate_views(const Region& region, std::span<const Pose> T_world_camera,
                                                   const GainConfig& config, const Executor& executor);
 
+  [[nodiscard]] Result<std::uint64_t> read_states(const IndexBox& box, std::span<VoxelState> states) override;
+  [[nodiscard]] Result<std::vector<ExposedVoxel>> exposed(std::uint64_t ticket, const ExposureTask& task) override;
+  [[nodiscard]] Result<std::vector<std::uint8_t>> in_sight(std::uint64_t ticket, std::span<const LineOfSight> lines,
+                                                           std::span<const Eigen::Vector3d> cameras_m,
+                                                           double through_m) override;
+
+  /// Tells whether the GPU's memory did not suffice for the map, so that it holds a part.
+  [[nodiscard]] bool is_paged() const;
+  [[nodiscard]] GpuTraffic traffic() const;
+
  private:
   class Impl;
+  friend struct internal::cuda::GpuMapMaker;
   explicit GpuMap(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -219,8 +219,8 @@ Cell read_cell_document(const YAML::Node& document, const fs::path& folder) {
   cell.hand = program_under(map, "hand");
   if (const YAML::Node tracking = map.find("tracking"); tracking.IsDefined()) {
     cell.tracking = yaml_text(tracking);
-    if (cell.tracking != "forced" && cell.tracking != "hint" && cell.tracking != "icp") {
-      yaml_problem(tracking, "tracking is forced, hint or icp");
+    if (cell.tracking != "forced" && cell.tracking != "hint" && cell.tracking != "icp" && cell.tracking != "rgbd") {
+      yaml_problem(tracking, "tracking is forced, hint, icp or rgbd");
     }
   }
   cell.fixtures = read_boxes(map.find("fixtures"));

@@ -56,7 +56,7 @@ struct Cell {
   CellProgram hand{};
   CellWatch watch{};
   double camera_clock_offset_s{0.0};  ///< added to the camera's times to get the joints' times
-  std::string tracking{};             ///< forced, hint or icp; empty: not given
+  std::string tracking{};             ///< forced, hint, icp or rgbd; empty: not given
   std::vector<Box> fixtures{};
   std::vector<Box> free{};
 };

@@ -105,7 +105,7 @@ Result<StandByResult> Explorer::return_to_stand_by() {
 
 PlanningScene Explorer::scene(PhaseTimes& times) const {
   const PinholeCamera sensor = widened_vertically(parts_.camera.intrinsics(), config_.oscillation_rad);
-  return {parts_.map.content(), parts_.executor, &times, &parts_.robot, &attempts_, region_, sensor};
+  return {parts_.map.content(), parts_.executor, &times, &parts_.robot, &attempts_, region_, sensor, parts_.device};
 }
 
 std::optional<StopReason> Explorer::stopped(const RunRecord& run) const {

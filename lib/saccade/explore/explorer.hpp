@@ -12,6 +12,7 @@
 #include "saccade/explore/foresight.hpp"
 #include "saccade/explore/recorder.hpp"
 #include "saccade/explore/stopping.hpp"
+#include "saccade/explore/surface_model.hpp"
 #include "saccade/explore/view_planner.hpp"
 #include "saccade/robot/robot.hpp"
 #include "saccade/sensor/camera.hpp"
@@ -36,7 +37,7 @@ struct ExplorerConfig {
 
   /// Source of the frames' poses. forced takes the robot's. hint lets ICP start there, and takes the robot's where ICP
   /// fails. icp lets it start where the robot's motion leads from the last tracked pose, and skips frames where it
-  /// fails.
+  /// fails; so does rgbd, with colours.
   TrackingMode tracking{TrackingMode::forced};
   /// Added to the camera's times to get the robot's. Frames with a time are fused where the robot was at that time, if
   /// the robot has a clock too.
@@ -64,6 +65,8 @@ struct ExplorerParts {
   Approve approve{};                  ///< asked before each move to a view or a scan pose; empty: go
   const Progress* progress{nullptr};
   std::function<bool()> suspended{};  ///< asked before each frame; true: none is taken. Empty: all are taken
+  SurfaceModel* model{nullptr};       ///< fused beside the map; nullptr: the map alone is the model
+  SurfaceDevice* device{nullptr};     ///< computes parts of the expected surface; nullptr: the CPU does
 };
 
 /// Return to the stand-by pose.
@@ -76,7 +79,8 @@ struct StandByResult {
 /// Exploration loop. One caller at a time. Fuses the camera's frames, at poses by ExplorerConfig::tracking.
 class Explorer {
  public:
-  Explorer(ExplorerParts parts, const ExplorerConfig& config) : parts_{std::move(parts)}, config_{config} {}
+  Explorer(ExplorerParts parts, const ExplorerConfig& config)
+      : parts_{std::move(parts)}, config_{config}, rgbd_{tracker_config(config)} {}
 
   /// Performs the initial scan: moves to each reachable pose, takes frames, and fuses them. First sets free the volume
   /// that the robot sweeps on its way (Robot::swept_volume); the caller guarantees that it is free. Errors: those of
@@ -126,6 +130,12 @@ class Explorer {
                                                   TrackedFrames& tracking);
   [[nodiscard]] Result<double> farthest_tilt_rad(const Pose& T_world_view, double wanted_rad);
 
+  [[nodiscard]] static RgbdTrackerConfig tracker_config(const ExplorerConfig& config) {
+    RgbdTrackerConfig tracker;
+    tracker.alignment.icp = config.icp;
+    return tracker;
+  }
+
   ExplorerParts parts_;
   ExplorerConfig config_;
   Attempts attempts_;
@@ -134,6 +144,7 @@ class Explorer {
   std::vector<Frame> frames_;  ///< frames of the view being taken
   /// Last pose found by ICP, relative to the robot's.
   Pose T_robot_tracked_{Pose::Identity()};
+  RgbdTracker rgbd_;  ///< used in TrackingMode::rgbd
 };
 
 }  // namespace saccade

@@ -56,10 +56,16 @@ Result<double> Explorer::farthest_tilt_rad(const Pose& T_world_view, double want
 Result<std::optional<Pose>> Explorer::track(const Frame& frame, const Pose& T_world_robot, TrackedFrames& tracking) {
   if (config_.tracking == TrackingMode::forced || parts_.map.content().grid.empty())
     return std::optional{T_world_robot};
-  const bool carries = config_.tracking == TrackingMode::icp;
+  const bool carries = !needs_pose(config_.tracking);
   const Pose start = carries ? T_world_robot * T_robot_tracked_ : T_world_robot;
-  SACCADE_TRY(const FrameReport report, track_frame(parts_.map.content(), frame, parts_.camera.intrinsics(), start,
-                                                    parts_.executor, config_.icp));
+  FrameReport report;
+  const PinholeCamera& camera = parts_.camera.intrinsics();
+  if (config_.tracking == TrackingMode::rgbd) {
+    const SurfaceAt surface = surface_of_map(parts_.map.content(), camera, parts_.executor);
+    SACCADE_TRY(report, rgbd_.track_from(surface, frame, camera, start, parts_.executor));
+  } else {
+    SACCADE_TRY(report, track_frame(parts_.map.content(), frame, camera, start, parts_.executor, config_.icp));
+  }
   if (report.status == FrameReport::Status::lost) {
     tracking.refuse(report.why);
     return carries ? std::optional<Pose>{} : std::optional{T_world_robot};
@@ -76,6 +82,12 @@ Result<bool> Explorer::fuse(Frame frame, const Pose& T_world_robot, bool keep, T
   SACCADE_TRY(
       [[maybe_unused]] const FusionStats stats,
       parts_.map.integrate(parts_.camera.intrinsics(), frame.depth, *frame.T_world_camera, parts_.executor, color));
+  if (parts_.model != nullptr) {
+    SACCADE_CHECK(parts_.model->fuse(frame, parts_.camera.intrinsics(), parts_.executor));
+  }
+  if (config_.tracking == TrackingMode::rgbd) {
+    rgbd_.fused(frame, parts_.camera.intrinsics(), *frame.T_world_camera, parts_.executor);
+  }
   if (keep) frames_.push_back(std::move(frame));
   return true;
 }

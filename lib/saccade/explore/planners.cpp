@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "saccade/core/nearest_word.hpp"
+#include "saccade/views/one_shot_gain.hpp"
 #include "saccade/views/surface_views.hpp"
 
 namespace saccade {
@@ -83,7 +84,7 @@ NamedPlanner surface_planner() {
                                  .one_roll = setup.looks_ahead};
     std::shared_ptr<AttentionSource> attention = std::make_shared<WholeWorkspace>();
     if (setup.weigh_by_saliency) attention = std::make_shared<SalientWorkspace>(setup.attention);
-    return PlannerParts{std::move(attention), surface_views_of(setup), std::make_shared<SurfaceGain>(gain),
+    return PlannerParts{std::move(attention), surface_views_of(setup), std::make_shared<SurfaceGain>(gain, setup.sight),
                         with_tries(setup, setup.looks_ahead ? kForesightTries : kSurfaceTries)};
   };
   return {"surface", "views of contours and of what is missing, by the surface that they are expected to show, in cm²",
@@ -104,6 +105,19 @@ NamedPlanner attention_planner() {
   };
   return {"attention", "views of the contours of what looks like an object, the most salient first", 50.0, false, false,
           make};
+}
+
+NamedPlanner one_shot(const NamedPlanner& planner) {
+  NamedPlanner once = planner;
+  once.name += "-one-shot";
+  once.text = "as " + planner.name + ", but all views are chosen at once after the first look";
+  once.make = [make = planner.make](const PlannerSetup& setup) {
+    PlannerParts parts = make(setup);
+    const OneShotConfig plan{.max_views = setup.max_views, .min_addition = parts.config.min_gain};
+    parts.gain = std::make_shared<OneShotGain>(parts.gain, plan);
+    return parts;
+  };
+  return once;
 }
 
 Planners builtin_planners() {

@@ -26,6 +26,7 @@ struct PlannerSetup {
   /// alike.
   bool weigh_by_saliency{false};
   double least_share{SurfaceGainConfig{}.least_share};
+  MakeSight sight{};  ///< lines of sight of the strategy `surface`; empty: along the voxels of the map
   /// Follows Algorithms 1 and 4 to the letter: only the most salient segment counts, scraps are ordinary segments,
   /// gains of rays are believed whatever earlier views have shown, and sphere evaluates unreachable poses too.
   bool as_printed{false};
@@ -71,6 +72,9 @@ class Planners {
 [[nodiscard]] NamedPlanner surface_planner();
 /// Returns the planner by the most salient object's contours. Thesis §3.1, Algorithm 4.
 [[nodiscard]] NamedPlanner attention_planner();
+/// Returns the planner that chooses all its views at once from what the first look promises: OneShotGain over the gain
+/// of `planner`, named "NAME-one-shot".
+[[nodiscard]] NamedPlanner one_shot(const NamedPlanner& planner);
 /// Returns the planners that need no ground truth.
 [[nodiscard]] Planners builtin_planners();
 

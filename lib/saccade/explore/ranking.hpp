@@ -25,11 +25,13 @@ struct PlanningScene {
   const Attempts* attempts{nullptr};      ///< nullptr: no attempts yet
   std::size_t first_region{0};            ///< regions of a lower index are done
   std::optional<PinholeCamera> sensor{};  ///< field of view and range of a view, tilts included; nullopt: unknown
+  SurfaceDevice* device{nullptr};         ///< computes parts of the expected surface; nullptr: the CPU does
 
   /// Returns the part of it for attention, view generator and gain.
   [[nodiscard]] PlanningContext context(std::size_t region = 0) const {
     PlanningContext context{map, executor, times, region, attempts != nullptr ? attempts->views_of(region) : 0};
     context.sensor = sensor;
+    context.device = device;
     if (attempts != nullptr) {
       context.attempted = [tried = attempts, region](const Pose& pose) { return tried->contains(region, pose); };
       context.checked = attempts->checked();

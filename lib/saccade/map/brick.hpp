@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "saccade/core/result.hpp"
 #include "saccade/map/voxel_index.hpp"
 #include "saccade/sensor/image.hpp"
 
@@ -286,6 +287,8 @@ struct Sector {
   [[nodiscard]] bool all_unknown() const;
 };
 
+class StoredSector;
+
 /// Shared, copy-on-write handle of a sector. Like BrickRef, but never null after make().
 class SectorRef {
  public:
@@ -310,7 +313,16 @@ class SectorRef {
   /// its reads happen before our writes.
   [[nodiscard]] Sector& writable() {
     if (block_->references.load(std::memory_order_acquire) != 1) *this = SectorRef{new Block{block_->sector}};
+    if (block_->stored) block_->stored.reset();
     return block_->sector;
+  }
+
+  /// Returns the copy of this very content in a store; null where there is none, or the sector was written since.
+  [[nodiscard]] const std::shared_ptr<const StoredSector>& stored() const { return block_->stored; }
+  /// Remembers such a copy. Requires an unshared handle.
+  void set_stored(std::shared_ptr<const StoredSector> stored) {
+    SACCADE_EXPECTS(block_->references.load(std::memory_order_acquire) == 1);
+    block_->stored = std::move(stored);
   }
 
  private:
@@ -319,6 +331,7 @@ class SectorRef {
     explicit Block(const Sector& s) : sector{s} {}
     std::atomic<std::uint32_t> references{1};
     Sector sector;
+    std::shared_ptr<const StoredSector> stored;
   };
   explicit SectorRef(Block* block) : block_{block} {}
   Block* block_{nullptr};

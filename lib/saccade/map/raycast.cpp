@@ -196,22 +196,12 @@ class CasterPool {
   std::vector<std::unique_ptr<TileCaster>> idle_;
 };
 
-}  // namespace
-
-Result<SurfaceView> raycast(const TsdfSnapshot& map, const PinholeCamera& camera, const Pose& T_world_camera,
-                            const Executor& executor, const RaycastConfig& config) {
-  SACCADE_CHECK(camera.validate());
-  if (const auto checked = pose_from_matrix(T_world_camera.matrix()); !checked) return checked.error();
-  SurfaceView view;
-  view.depth = DepthImage{camera.width, camera.height};
-  view.normals = Image<Eigen::Vector3f>{camera.width, camera.height, Eigen::Vector3f::Zero()};
-  if (config.colors) view.colors = ColorImage{camera.width, camera.height};
-  if (map.grid.empty()) return view;
-
-  const double e = map.config.voxel_size_m;
+/// Casts the view through a grid in which what it reads is in memory.
+void cast_view(const TsdfGrid& grid, double e, const PinholeCamera& camera, const Pose& T_world_camera,
+               const Executor& executor, const RaycastConfig& config, SurfaceView& view) {
   const Eigen::Vector3d origin = T_world_camera.translation() / e - Eigen::Vector3d::Constant(0.5);
-  const SectorTable sectors{map.grid};
-  const SurfaceTiles tiles{map.grid, sectors, camera, T_world_camera, e, executor};
+  const SectorTable sectors{grid};
+  const SurfaceTiles tiles{grid, sectors, camera, T_world_camera, e, executor};
   const Cast cast{camera,
                   sectors,
                   tiles,
@@ -229,6 +219,32 @@ Result<SurfaceView> raycast(const TsdfSnapshot& map, const PinholeCamera& camera
     }
     casters.give_back(std::move(caster));
   });
+}
+
+}  // namespace
+
+Result<SurfaceView> raycast(const TsdfSnapshot& map, const PinholeCamera& camera, const Pose& T_world_camera,
+                            const Executor& executor, const RaycastConfig& config) {
+  SACCADE_CHECK(camera.validate());
+  if (const auto checked = pose_from_matrix(T_world_camera.matrix()); !checked) return checked.error();
+  SurfaceView view;
+  view.depth = DepthImage{camera.width, camera.height};
+  view.normals = Image<Eigen::Vector3f>{camera.width, camera.height, Eigen::Vector3f::Zero()};
+  if (config.colors) view.colors = ColorImage{camera.width, camera.height};
+  if (map.grid.empty()) return view;
+
+  const double e = map.config.voxel_size_m;
+  if (map.grid.all_in_memory()) {
+    cast_view(map.grid, e, camera, T_world_camera, executor, config, view);
+    return view;
+  }
+  const std::vector<Index3> read = sectors_cast_through(map.grid, camera, T_world_camera, e);
+  if (std::none_of(read.begin(), read.end(), [&](const Index3& key) { return map.grid.is_away(key); })) {
+    cast_view(map.grid, e, camera, T_world_camera, executor, config, view);
+    return view;
+  }
+  SACCADE_TRY(const TsdfGrid part, with_in_memory(map.grid, read, executor));
+  cast_view(part, e, camera, T_world_camera, executor, config, view);
   return view;
 }
 

@@ -25,6 +25,7 @@ struct RaycastConfig {
 /// Casts one ray per pixel to the first zero crossing from outside to inside of the trilinear interpolation of v
 /// (thesis §2.2.1). Walks the cells between voxel centres exactly, so that thin structures are never missed. Cells with
 /// an unknown corner hold no surface; rays pass through unknown space. Surfaces seen from behind are not reported.
+/// Of a paged map, it reads what it needs from the store where that is away; errors: those of the store.
 /// O(pixels · bricks along the ray). Threads never change a bit of the result.
 [[nodiscard]] Result<SurfaceView> raycast(const TsdfSnapshot& map, const PinholeCamera& camera,
                                           const Pose& T_world_camera, const Executor& executor,

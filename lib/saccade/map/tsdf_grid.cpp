@@ -3,8 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "saccade/map/sector_store.hpp"
 
 namespace saccade {
+namespace {
+
+[[noreturn]] void refuse(const Index3& sector) {
+  throw ContractViolation{"sector (" + std::to_string(sector.x) + ", " + std::to_string(sector.y) + ", " +
+                          std::to_string(sector.z) + ") of the map is paged out; bring it in before it is read"};
+}
+
+}  // namespace
 
 Status TsdfConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "map configuration"}; };
@@ -38,10 +49,13 @@ IndexBox voxels_with_center_in(const Box& box, double voxel_size_m) {
 
 const Sector* TsdfGrid::find(const Index3& sector) const {
   const auto it = sectors_.find(sector);
-  return it == sectors_.end() ? nullptr : it->second.get();
+  if (it != sectors_.end()) return it->second.get();
+  if (is_away(sector)) refuse(sector);
+  return nullptr;
 }
 
 Sector& TsdfGrid::writable(const Index3& sector) {
+  if (is_away(sector)) refuse(sector);
   SectorRef& slot = sectors_[sector];
   if (!slot) slot = SectorRef::make();
   return slot.writable();
@@ -51,6 +65,50 @@ Sector& TsdfGrid::writable_existing(const Index3& sector) {
   const auto it = sectors_.find(sector);
   SACCADE_EXPECTS(it != sectors_.end());
   return it->second.writable();
+}
+
+std::shared_ptr<const StoredSector> TsdfGrid::away(const Index3& sector) const {
+  const auto it = away_.find(sector);
+  return it == away_.end() ? nullptr : it->second;
+}
+
+std::vector<Index3> TsdfGrid::away_in(const IndexBox& box) const {
+  std::vector<Index3> keys;
+  for (const auto& entry : away_) {
+    if (box.contains(entry.first)) keys.push_back(entry.first);
+  }
+  std::sort(keys.begin(), keys.end(), zyx_less);
+  return keys;
+}
+
+SectorRef TsdfGrid::in_memory(const Index3& sector) const {
+  const auto it = sectors_.find(sector);
+  return it == sectors_.end() ? SectorRef{} : it->second;
+}
+
+Result<SectorRef> TsdfGrid::read(const Index3& sector) const {
+  const auto it = away_.find(sector);
+  return it == away_.end() ? Result<SectorRef>{in_memory(sector)} : it->second->read();
+}
+
+void TsdfGrid::page_out(const Index3& sector, std::shared_ptr<const StoredSector> stored) {
+  SACCADE_EXPECTS(stored != nullptr);
+  const std::size_t taken = sectors_.erase(sector);
+  SACCADE_EXPECTS(taken == 1);
+  away_.insert_or_assign(sector, std::move(stored));
+}
+
+void TsdfGrid::page_in(const Index3& sector, SectorRef loaded) {
+  SACCADE_EXPECTS(loaded);
+  const std::size_t taken = away_.erase(sector);
+  SACCADE_EXPECTS(taken == 1);
+  sectors_.insert_or_assign(sector, std::move(loaded));
+}
+
+void TsdfGrid::set_stored(const Index3& sector, std::shared_ptr<const StoredSector> stored) {
+  const auto it = sectors_.find(sector);
+  SACCADE_EXPECTS(it != sectors_.end());
+  it->second.set_stored(std::move(stored));
 }
 
 Voxel TsdfGrid::voxel(const Index3& voxel) const {
@@ -72,8 +130,9 @@ std::optional<Rgb8> TsdfGrid::color(const Index3& voxel) const {
 
 std::vector<Index3> TsdfGrid::sorted_sectors() const {
   std::vector<Index3> keys;
-  keys.reserve(sectors_.size());
+  keys.reserve(sector_count());
   for (const auto& entry : sectors_) keys.push_back(entry.first);
+  for (const auto& entry : away_) keys.push_back(entry.first);
   std::sort(keys.begin(), keys.end(), zyx_less);
   return keys;
 }
@@ -81,6 +140,7 @@ std::vector<Index3> TsdfGrid::sorted_sectors() const {
 IndexBox TsdfGrid::sector_bounds() const {
   IndexBox box;
   for (const auto& entry : sectors_) box = box.hull(IndexBox::cube(entry.first, 1));
+  for (const auto& entry : away_) box = box.hull(IndexBox::cube(entry.first, 1));
   return box;
 }
 
@@ -92,12 +152,26 @@ IndexBox TsdfGrid::known_bounds() const {
       box = box.hull(IndexBox::cube((key * kSectorEdge + child_offset(child)) * kBrickEdge, kBrickEdge));
     }
   }
+  for (const auto& [key, stored] : away_) {
+    stored->summary().known.for_each([&, at = key](std::size_t child) {
+      box =
+          box.hull(IndexBox::cube((at * kSectorEdge + child_offset(static_cast<int>(child))) * kBrickEdge, kBrickEdge));
+    });
+  }
   return box;
 }
 
 TsdfGrid::Usage TsdfGrid::usage() const {
   Usage usage;
-  usage.sectors = sectors_.size();
+  usage.sectors = sector_count();
+  usage.away_sectors = away_.size();
+  for (const auto& entry : away_) {
+    const StoredSector::Summary& stored = entry.second->summary();
+    usage.constant_free_bricks += stored.constant_free_bricks;
+    usage.free_bricks += stored.free_bricks;
+    usage.dense_bricks += stored.dense_bricks;
+    usage.away_bytes += stored.memory_bytes;
+  }
   for (const auto& entry : sectors_) {
     usage.bytes += sizeof(Sector) + sizeof(entry) + 2 * sizeof(void*);
     for (const BrickRef& brick : (*entry.second).bricks) {
@@ -114,14 +188,22 @@ TsdfGrid::Usage TsdfGrid::usage() const {
 }
 
 bool TsdfGrid::operator==(const TsdfGrid& other) const {
-  if (sectors_.size() != other.sectors_.size()) return false;
-  for (const auto& entry : sectors_) {
-    const Sector* theirs = other.find(entry.first);
-    if (theirs == nullptr) return false;
-    if (theirs != entry.second.get() && theirs->bricks != (*entry.second).bricks) return false;
+  if (sector_count() != other.sector_count()) return false;
+  const auto equal = [](const SectorRef& ours, const SectorRef& theirs) {
+    return theirs && (ours.get() == theirs.get() || (*ours).bricks == (*theirs).bricks);
+  };
+  for (const auto& [key, ours] : sectors_) {
+    if (!equal(ours, other.read(key).value())) return false;
+  }
+  for (const auto& [key, stored] : away_) {
+    if (stored != other.away(key) && !equal(stored->read().value(), other.read(key).value())) return false;
   }
   return true;
 }
+
+const Sector SectorTable::kAway;
+
+void SectorTable::refuse_away(const Index3& sector) { refuse(sector); }
 
 SectorTable::SectorTable(const TsdfGrid& grid, const IndexBox& box) {
   box_ = box.intersection(grid.sector_bounds());
@@ -137,7 +219,7 @@ SectorTable::SectorTable(const TsdfGrid& grid, const IndexBox& box) {
   size_x_ = static_cast<std::size_t>(box_.size().x);
   size_y_ = static_cast<std::size_t>(box_.size().y);
   sectors_.reserve(static_cast<std::size_t>(box_.count()));
-  box_.for_each([&](const Index3& sector) { sectors_.push_back(grid.find(sector)); });
+  box_.for_each([&](const Index3& sector) { sectors_.push_back(grid.is_away(sector) ? &kAway : grid.find(sector)); });
 }
 
 }  // namespace saccade

@@ -8,21 +8,26 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/map/internal/frame_check.hpp"
 #include "saccade/map/internal/frame_fuser.hpp"
+#include "saccade/map/internal/map_pager.hpp"
+#include "saccade/map/internal/surface_tiles.hpp"
 #include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {
 namespace {
 
-/// Returns the sectors of a box in z-y-x order: all, or only those that are stored.
-std::vector<Index3> sectors_in(const IndexBox& box, const TsdfGrid& grid, bool only_stored) {
+enum class Kept { known, or_not };
+
+/// Returns the sectors of a box in z-y-x order: all, or only those that hold anything known.
+std::vector<Index3> sectors_in(const IndexBox& box, const TsdfGrid& grid, Kept kept) {
+  const bool only_known = kept == Kept::known;
   std::vector<Index3> keys;
-  if (only_stored && box.count() > static_cast<double>(grid.sector_count())) {
+  if (only_known && box.count() > static_cast<double>(grid.sector_count())) {
     keys = grid.sorted_sectors();
     std::erase_if(keys, [&](const Index3& key) { return !box.contains(key); });
     return keys;
   }
   box.for_each([&](const Index3& key) {
-    if (!only_stored || grid.find(key) != nullptr) keys.push_back(key);
+    if (!only_known || grid.holds(key)) keys.push_back(key);
   });
   return keys;
 }
@@ -40,7 +45,7 @@ void edit_region(TsdfGrid& grid, const TsdfConfig& config, const Region& region,
   if (voxels.empty()) return;
   const IndexBox bricks = parents(voxels);
   const bool only_known = which == Bricks::known;
-  for (const Index3& key : sectors_in(parents(bricks), grid, only_known)) {
+  for (const Index3& key : sectors_in(parents(bricks), grid, only_known ? Kept::known : Kept::or_not)) {
     const Sector* shared = grid.find(key);
     Sector* sector{nullptr};  // unshared only when a brick of it is written
     for (int i = 0; i < kSectorBricks; ++i) {
@@ -72,6 +77,15 @@ void overwrite(DenseBrick& dense, const Mask512& mask, const Voxel& voxel) {
   dense.occupied = dense.occupied & ~mask;
 }
 
+/// Fuses a frame into a sector in memory. One that it leaves as it was keeps its copy in the store.
+FrameFuser::Counts fuse_paged(const FrameFuser& fuser, const Index3& key, TsdfGrid& grid) {
+  const std::shared_ptr<const StoredSector> stored = grid.in_memory(key).stored();
+  const FrameFuser::Counts counts = fuser.fuse(key, grid.writable_existing(key));
+  const bool unchanged = counts.bricks_updated == 0 && counts.bricks_free == counts.bricks_saturated;
+  if (stored != nullptr && unchanged) grid.set_stored(key, stored);
+  return counts;
+}
+
 void forget_voxels(BrickRef& brick, const Mask512& inside) {
   if ((brick.unknown_mask() | inside).all()) {
     brick = {};
@@ -101,10 +115,12 @@ void free_voxels(BrickRef& brick, const Mask512& inside, std::uint16_t free_weig
 
 TsdfMap::TsdfMap(const TsdfConfig& config) : content_{config, {}} {}
 TsdfMap::TsdfMap(TsdfSnapshot content) : content_{std::move(content)} {}
-TsdfMap::TsdfMap(TsdfMap&& other) noexcept : content_{std::move(other.content_)} {}
+TsdfMap::TsdfMap(TsdfMap&& other) noexcept : content_{std::move(other.content_)}, pager_{std::move(other.pager_)} {}
+TsdfMap::~TsdfMap() = default;
 TsdfMap& TsdfMap::operator=(TsdfMap&& other) noexcept {
   const std::scoped_lock lock{mutex_};
   content_ = std::move(other.content_);
+  pager_ = std::move(other.pager_);
   return *this;
 }
 
@@ -123,6 +139,8 @@ Result<FusionStats> TsdfMap::integrate(const PinholeCamera& camera, const DepthI
 
   const std::scoped_lock lock{mutex_};
   TsdfGrid& grid = content_.grid;
+  const Eigen::Vector3d camera_world = T_world_camera.translation();
+  SACCADE_CHECK(bring_in(keys, &camera_world, executor));
   std::vector<std::uint8_t> unchanged(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const Sector* sector = grid.find(keys[i]);
@@ -137,8 +155,10 @@ Result<FusionStats> TsdfMap::integrate(const PinholeCamera& camera, const DepthI
     for (std::size_t i = begin; i < end; ++i) {
       if (unchanged[i] != 0) {
         counts[i] = {0, kSectorBricks, kSectorBricks};
-      } else {
+      } else if (pager_ == nullptr) {
         counts[i] = fuser.fuse(keys[i], grid.writable_existing(keys[i]));
+      } else {
+        counts[i] = fuse_paged(fuser, keys[i], grid);
       }
     }
   });
@@ -149,24 +169,76 @@ Result<FusionStats> TsdfMap::integrate(const PinholeCamera& camera, const DepthI
     stats.bricks_saturated += counts[i].bricks_saturated;
     if (counts[i].bricks_updated + counts[i].bricks_free == 0 && grid.find(keys[i])->all_unknown()) grid.erase(keys[i]);
   }
+  if (pager_ != nullptr) pager_->settle(grid, keys, executor);
   stats.valid_pixels = ranges.valid_pixels();
   stats.ms = stopwatch.elapsed_ms();
   return stats;
 }
 
 Status TsdfMap::forget(const Region& region) {
-  SACCADE_CHECK(check_region(region));
-  const std::scoped_lock lock{mutex_};
-  edit_region(content_.grid, config(), region, Bricks::known,
-              [](BrickRef& brick, const Mask512& inside) { forget_voxels(brick, inside); });
-  return {};
+  return edit_sectors(region, [&] {
+    edit_region(content_.grid, config(), region, Bricks::known,
+                [](BrickRef& brick, const Mask512& inside) { forget_voxels(brick, inside); });
+  });
 }
 
 Status TsdfMap::free(const Region& region) {
+  return edit_sectors(region, [&] {
+    edit_region(content_.grid, config(), region, Bricks::all,
+                [&](BrickRef& brick, const Mask512& inside) { free_voxels(brick, inside, config().free_weight); });
+  });
+}
+
+Status TsdfMap::edit_sectors(const Region& region, const std::function<void()>& edit) {
   SACCADE_CHECK(check_region(region));
   const std::scoped_lock lock{mutex_};
-  edit_region(content_.grid, config(), region, Bricks::all,
-              [&](BrickRef& brick, const Mask512& inside) { free_voxels(brick, inside, config().free_weight); });
+  const bool is_plain = pager_ == nullptr && content_.grid.all_in_memory();
+  const IndexBox voxels = voxels_with_center_in(bounds(region), config().voxel_size_m);
+  if (is_plain || voxels.empty()) {
+    edit();
+    return {};
+  }
+  const IndexBox sectors = parents(parents(voxels));
+  const std::vector<Index3> stored = sectors_in(sectors, content_.grid, Kept::known);
+  SACCADE_CHECK(bring_in(stored, nullptr, {}));
+  edit();
+  if (pager_ != nullptr) pager_->settle(content_.grid, sectors_in(sectors, content_.grid, Kept::or_not), {});
+  return {};
+}
+
+Status TsdfMap::keep_within(const PagingConfig& config) {
+  SACCADE_CHECK(config.validate());
+  const std::scoped_lock lock{mutex_};
+  if (pager_ != nullptr) return Error{Errc::invalid_argument, "the map is paged already", "paging of the map"};
+  pager_ = std::make_unique<MapPager>(config, this->config().voxel_size_m, content_.grid);
+  return {};
+}
+
+Status TsdfMap::look_from(const PinholeCamera& camera, const Pose& T_world_camera, const Executor& executor) {
+  if (pager_ == nullptr) return {};
+  SACCADE_CHECK(camera.validate());
+  if (const auto checked = pose_from_matrix(T_world_camera.matrix()); !checked) return checked.error();
+  const std::scoped_lock lock{mutex_};
+  const Eigen::Vector3d camera_world = T_world_camera.translation();
+  return bring_in(sectors_cast_through(content_.grid, camera, T_world_camera, config().voxel_size_m), &camera_world,
+                  executor);
+}
+
+Status TsdfMap::page_out_all(const Executor& executor) {
+  if (pager_ == nullptr) return {};
+  const std::scoped_lock lock{mutex_};
+  return pager_->page_out_all(content_.grid, executor);
+}
+
+std::optional<PagingStats> TsdfMap::paging() const {
+  const std::scoped_lock lock{mutex_};
+  return pager_ == nullptr ? std::nullopt : std::optional{pager_->stats()};
+}
+
+Status TsdfMap::bring_in(std::span<const Index3> keys, const Eigen::Vector3d* camera_world, const Executor& executor) {
+  if (pager_ != nullptr) return pager_->bring_in(content_.grid, keys, camera_world, executor);
+  if (content_.grid.all_in_memory()) return {};
+  SACCADE_TRY(content_.grid, with_in_memory(content_.grid, keys, executor));  // a snapshot of a paged map goes on
   return {};
 }
 

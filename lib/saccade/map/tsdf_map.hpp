@@ -3,12 +3,15 @@
 // TsdfMap: the map that one thread fuses into. TsdfSnapshot: its content for readers, taken in microseconds.
 // count_unknown: number of unknown voxels in a region.
 
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/core/region.hpp"
+#include "saccade/map/map_paging.hpp"
 #include "saccade/map/tsdf_grid.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
@@ -25,7 +28,10 @@ struct FusionStats {
   double ms{0.0};
 };
 
-/// Immutable view of a map, cheap to copy and destroy. It stays unchanged while the map goes on.
+class MapPager;
+
+/// Immutable view of a map, cheap to copy and destroy. It stays unchanged while the map goes on. That of a paged map
+/// keeps the sectors in memory that were there, and reads the others from the store as they were then.
 struct TsdfSnapshot {
   TsdfConfig config;
   TsdfGrid grid;
@@ -41,6 +47,20 @@ class TsdfMap {
   explicit TsdfMap(TsdfSnapshot content);
   TsdfMap(TsdfMap&& other) noexcept;
   TsdfMap& operator=(TsdfMap&& other) noexcept;
+  ~TsdfMap();
+
+  /// Keeps the map within limits from now on: sectors go to a store and come back. Frames, forgotten and freed regions
+  /// give the same content, to the bit. Where the store fails, integrate, forget and free answer its error, and the
+  /// content is as it was. Answers invalid_argument for an invalid configuration, or a map that is paged already.
+  [[nodiscard]] Status keep_within(const PagingConfig& config);
+  /// Brings in what a ray cast from here reads, so that it need not do so itself. Does nothing for a map that is not
+  /// paged. Errors: those of the store.
+  [[nodiscard]] Status look_from(const PinholeCamera& camera, const Pose& T_world_camera, const Executor& executor);
+  /// Takes all sectors out of memory, before other work on content() that brings in what it needs, part by part. Does
+  /// nothing for a map that is not paged.
+  [[nodiscard]] Status page_out_all(const Executor& executor);
+  /// Returns none for a map that is not paged.
+  [[nodiscard]] std::optional<PagingStats> paging() const;
 
   [[nodiscard]] const TsdfConfig& config() const { return content_.config; }
   /// Returns the writer's own view, without a copy. Not for other threads.
@@ -69,8 +89,14 @@ class TsdfMap {
  private:
   explicit TsdfMap(const TsdfConfig& config);
   [[nodiscard]] Status check_region(const Region& region) const;
+  /// Brings in sectors of a paged map; camera_world may be null.
+  [[nodiscard]] Status bring_in(std::span<const Index3> keys, const Eigen::Vector3d* camera_world,
+                                const Executor& executor);
+  /// Brings in the sectors of a region, calls edit(), and takes note of what it wrote.
+  [[nodiscard]] Status edit_sectors(const Region& region, const std::function<void()>& edit);
   mutable std::mutex mutex_;
   TsdfSnapshot content_;
+  std::unique_ptr<MapPager> pager_;  ///< null for a map that is not paged
 };
 
 /// Counts the unknown voxels whose centre lies in the region and in the map's workspace. O(voxels of the region).

@@ -8,6 +8,7 @@
 
 #include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/internal/orientation_marks.hpp"
+#include "saccade/report/internal/surfel_canvas.hpp"
 #include "saccade/report/sheet.hpp"
 
 namespace saccade {
@@ -73,6 +74,15 @@ std::vector<Place> places_of(std::span<const ScoredPose> candidates) {
   return places;
 }
 
+/// The surfels, where there are some, else the map.
+Canvas draw_known(const TsdfSnapshot& map, const DrawnSurfels* surfels, const Viewpoint& view, const Executor& executor,
+                  const TernaryPictureConfig& config) {
+  if (surfels == nullptr) return draw_ternary(map, view, executor, config);
+  Canvas canvas{view, kMapGround, config.samples};
+  draw_surfels_into(canvas, surfels->discs(), surfels->colors, executor);
+  return canvas;
+}
+
 void draw_places(Canvas& canvas, const std::vector<Place>& places, double full_gain) {
   constexpr double kHidden{0.35};
   for (const Place& place : places) {
@@ -119,8 +129,8 @@ ColorImage candidates_picture(const CandidatesScene& scene, const Executor& exec
   box.max.array() += config.margin_m;
   const TernaryPictureConfig ternary{.unknown_within = {scene.region}, .crop = box, .samples = config.samples};
   const Eigen::Vector3d middle = 0.5 * (around.min + around.max);
-  Canvas canvas =
-      draw_ternary(scene.map, overview_with(scene.robot, std::move(shown), middle, config.overview), executor, ternary);
+  Canvas canvas = draw_known(scene.map, scene.surfels,
+                             overview_with(scene.robot, std::move(shown), middle, config.overview), executor, ternary);
   if (scene.robot != nullptr) draw_robot(canvas, *scene.robot, executor);
 
   double best{0.0};
@@ -144,8 +154,8 @@ ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& 
   ternary.crop = Box{box.min.array() - config.margin_m, box.max.array() + config.margin_m};
   ternary.samples = config.samples;
   const Eigen::Vector3d middle = 0.5 * (box.min + box.max);
-  Canvas canvas =
-      draw_ternary(map, overview_with(config.robot, corners_of(box), middle, config.overview), executor, ternary);
+  Canvas canvas = draw_known(map, config.surfels, overview_with(config.robot, corners_of(box), middle, config.overview),
+                             executor, ternary);
   if (config.robot != nullptr) draw_robot(canvas, *config.robot, executor);
   draw_orientation(canvas, middle);
   return canvas.finish();

@@ -10,6 +10,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/report/depth_picture.hpp"
+#include "saccade/report/drawn_surfels.hpp"
 #include "saccade/report/robot_drawing.hpp"
 #include "saccade/report/view_picture.hpp"
 #include "saccade/sensor/camera.hpp"
@@ -28,6 +29,7 @@ struct CandidatesScene {
   Pose T_world_chosen{Pose::Identity()};
   std::span<const Pose> T_world_earlier;  ///< views taken before
   const RobotDrawing* robot{nullptr};     ///< drawn into the map; not owned
+  const DrawnSurfels* surfels{nullptr};   ///< drawn instead of the map; not owned
 };
 
 struct CandidatesPictureConfig {
@@ -46,9 +48,10 @@ struct CandidatesPictureConfig {
 
 struct MapPictureConfig {
   OverviewConfig overview{.width = 720, .height = 540};
-  double margin_m{0.1};                ///< shown around the box
-  int samples{1};                      ///< per pixel and direction
-  const RobotDrawing* robot{nullptr};  ///< drawn into the map; not owned
+  double margin_m{0.1};                  ///< shown around the box
+  int samples{1};                        ///< per pixel and direction
+  const RobotDrawing* robot{nullptr};    ///< drawn into the map; not owned
+  const DrawnSurfels* surfels{nullptr};  ///< drawn instead of the map; not owned
 };
 
 /// The map in a box, usually the workspace, as seen from outside; unknown as a veil. One place for one box and one

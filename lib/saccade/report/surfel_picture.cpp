@@ -3,21 +3,26 @@
 
 #include <vector>
 
-#include "saccade/report/internal/canvas.hpp"
+#include "saccade/report/internal/surfel_canvas.hpp"
 
 namespace saccade {
 
-ColorImage draw_surfels(const SurfelDiscs& discs, std::span<const Rgb8> colors, const Viewpoint& view,
-                        const Executor& executor, const SurfelPictureConfig& config) {
+void draw_surfels_into(Canvas& canvas, const SurfelDiscs& discs, std::span<const Rgb8> colors,
+                       const Executor& executor) {
   SACCADE_EXPECTS(colors.size() == discs.positions_m.size());
-  Canvas canvas{view, config.background, config.samples};
-  const SurfelView seen = view_surfels(discs, canvas.sample_camera(), view.T_world_camera, executor);
+  const SurfelView seen = view_surfels(discs, canvas.sample_camera(), canvas.view().T_world_camera, executor);
   for (std::size_t i = 0; i < seen.seen.size(); ++i) {
     const SurfelId id = seen.seen.pixels()[i];
     if (id == kNoSurfel) continue;
     canvas.samples().data()[i] = colors[id];
     canvas.sample_depth().data()[i] = seen.depth.pixels()[i];
   }
+}
+
+ColorImage draw_surfels(const SurfelDiscs& discs, std::span<const Rgb8> colors, const Viewpoint& view,
+                        const Executor& executor, const SurfelPictureConfig& config) {
+  Canvas canvas{view, config.background, config.samples};
+  draw_surfels_into(canvas, discs, colors, executor);
   return canvas.finish();
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Scene: named objects with poses, colours and textures, and the settings of an exploration. Shape: the objects'
-// bodies. Patch: painted parts. random_clutter: scenes drawn from a seed.
+// bodies. Patch: painted parts. random_clutter,
+// random_room, random_street: scenes drawn from a seed.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -198,5 +199,11 @@ struct FixtureBox {
 /// room, and an initial scan from one side of the table. 1 ≤ objects ≤ 16; fewer are placed when the table is full.
 /// Equal on every machine.
 [[nodiscard]] Scene random_clutter(std::uint64_t seed, int objects = 8);
+
+/// Draw a furnished room of 4 to 6 by 3.6 to 5 m, and a street of 56 m between houses, for scans to label
+/// (laser_scan.hpp): things of several bodies are one segment, and the poses of the initial scan are the scanner's
+/// stations. Equal on every machine.
+[[nodiscard]] Scene random_room(std::uint64_t seed);
+[[nodiscard]] Scene random_street(std::uint64_t seed);
 
 }  // namespace saccade

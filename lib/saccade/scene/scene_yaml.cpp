@@ -23,7 +23,14 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-constexpr std::string_view kClutterPrefix{"clutter:"};
+/// Scene that is drawn from a seed.
+struct DrawnScene {
+  std::string_view prefix;
+  Scene (*draw)(std::uint64_t seed);
+};
+constexpr std::array<DrawnScene, 3> kDrawnScenes{{{"clutter:", [](std::uint64_t seed) { return random_clutter(seed); }},
+                                                  {"room:", random_room},
+                                                  {"street:", random_street}}};
 
 RevolutionShape read_revolution(YamlMap& map) {
   RevolutionShape body;
@@ -255,12 +262,13 @@ Result<Scene> find_scene(const std::string& name_or_path, const MeshSceneConfig&
     SACCADE_TRY(SurfelScene made, surfel_scene(name));
     return std::move(made.scene);
   }
-  if (name_or_path.starts_with(kClutterPrefix)) {
-    const std::string digits = name_or_path.substr(kClutterPrefix.size());
-    const bool number =
+  for (const auto& [prefix, draw] : kDrawnScenes) {
+    if (!name_or_path.starts_with(prefix)) continue;
+    const std::string digits = name_or_path.substr(prefix.size());
+    const bool is_number =
         !digits.empty() && digits.size() <= 18 && digits.find_first_not_of("0123456789") == std::string::npos;
-    if (!number) return Error{Errc::invalid_argument, "a seed is a whole number: clutter:7", name_or_path};
-    return random_clutter(std::stoull(digits));
+    if (is_number) return draw(std::stoull(digits));
+    return Error{Errc::invalid_argument, "a seed is a whole number: " + std::string{prefix} + "7", name_or_path};
   }
   if (fs::exists(name_or_path)) {
     return is_mesh_file(name_or_path) ? mesh_scene(name_or_path, mesh) : read_scene(name_or_path);
@@ -268,7 +276,7 @@ Result<Scene> find_scene(const std::string& name_or_path, const MeshSceneConfig&
   std::vector<std::string_view> names{kSurfelScenes.begin(), kSurfelScenes.end()};
   for (const BuiltinScene& builtin : builtin_scenes()) names.push_back(builtin.name);
   return Error{Errc::not_found,
-               "no such scene; there are " + known + "clutter:SEED, and files (YAML, meshes)" +
+               "no such scene; there are " + known + "clutter:SEED, room:SEED, street:SEED, and files (YAML, meshes)" +
                    did_you_mean(name_or_path, names),
                name_or_path};
 }

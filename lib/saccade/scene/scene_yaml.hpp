@@ -37,8 +37,8 @@ struct MeshSceneConfig {
   [[nodiscard]] Status validate() const;
 };
 
-/// Finds a built-in scene by its name, "clutter:SEED" (random_clutter), or a file: YAML, or a mesh, which is put on a
-/// table (mesh_scene). Answers not_found with the known names.
+/// Finds a built-in scene by its name, "clutter:SEED", "room:SEED" or "street:SEED" (random_clutter …), or a file:
+/// YAML, or a mesh, which is put on a table (mesh_scene). Answers not_found with the known names.
 [[nodiscard]] Result<Scene> find_scene(const std::string& name_or_path, const MeshSceneConfig& mesh = {});
 
 /// Largest size of an object that stands well within the edges of the table, and below the ceiling of the workspace.

@@ -22,7 +22,7 @@ struct Look {
 double difference_of(const Look& a, const Look& b, const FloodFillConfig& config) {
   const double of_colors = (a.color.cast<double>() - b.color.cast<double>()).norm();
   const double of_normals = 1.0 - a.normal.cast<double>().dot(b.normal.cast<double>());
-  const auto both = static_cast<double>(a.has_normal * b.has_normal);
+  const double both = config.unknown_is_alike ? static_cast<double>(a.has_normal * b.has_normal) : 1.0;
   return config.color_weight * of_colors + config.normal_weight * (both * of_normals);
 }
 
@@ -67,8 +67,10 @@ Result<SurfelComponents> flood_fill(const SurfelGraph& graph, const PointCloud& 
     return Error{Errc::size_mismatch, "the graph is of another cloud", "flood fill"};
   }
   const std::vector<Look> looks = looks_of(graph, cloud);
+  FloodFillConfig filling = config;
+  filling.unknown_is_alike = config.unknown_is_alike || cloud.normals.empty();
   return connected_surfels(graph, executor, [&](std::uint32_t a, std::uint32_t b) {
-    return difference_of(looks[a], looks[b], config) < config.threshold;
+    return difference_of(looks[a], looks[b], filling) < filling.threshold;
   });
 }
 

@@ -23,15 +23,24 @@ struct SurfelComponents {
 
 /// Parameters of flood_fill: thesis eq. (4.14), Table 4.2.
 struct FloodFillConfig {
-  double color_weight{1.0};   ///< α_c, weight of ‖c₁ − c₂‖ with colours in [0, 1]
-  double normal_weight{0.5};  ///< α_n, weight of 1 − N₁ · N₂
-  double threshold{0.05};     ///< T_ff: touching surfels belong to one segment when their difference is smaller
+  double color_weight{1.0};     ///< α_c, weight of ‖c₁ − c₂‖ with colours in [0, 1]
+  double normal_weight{0.5};    ///< α_n, weight of 1 − N₁ · N₂
+  double threshold{0.05};       ///< T_ff: touching surfels belong to one segment when their difference is smaller
+  bool unknown_is_alike{true};  ///< a normal that is zero or not finite equals all others; false: N₁ · N₂ is 0
+
+  /// Eq. 4.14 for unknown normals, too. Nothing else in our flood fill departs from the thesis (decision 41).
+  [[nodiscard]] static FloodFillConfig as_printed() {
+    FloodFillConfig config;
+    config.unknown_is_alike = false;
+    return config;
+  }
 
   /// @return invalid_argument for a number that is not finite or negative.
   [[nodiscard]] Status validate() const;
 };
 
-/// Returns α_c ‖c₁ − c₂‖ + α_n (1 − N₁ · N₂), eq. (4.14). An unknown normal, zero or not finite, counts as equal.
+/// Returns α_c ‖c₁ − c₂‖ + α_n (1 − N₁ · N₂), eq. (4.14). An unknown normal, zero or not finite, counts as equal, or as
+/// zero (unknown_is_alike).
 [[nodiscard]] double surfel_difference(const Eigen::Vector3f& color_a, const Eigen::Vector3f& normal_a,
                                        const Eigen::Vector3f& color_b, const Eigen::Vector3f& normal_b,
                                        const FloodFillConfig& config);

@@ -27,9 +27,13 @@ struct SupervoxelConfig {
   double min_seed_share{
       0.3};       ///< share of the voxels that a plane fills within half a seed spacing; seeds with fewer are dropped
   int rounds{1};  ///< rounds of growth; before each but the first, supervoxels move to the means of their voxels
+  bool seeds_settle{true};        ///< seeds move to where normals and colours change least; false: they stay
+  double reach{2.0};              ///< steps of growth from voxel to voxel, in seed spacings
+  bool moves_in_growth{false};    ///< supervoxels move to the means of their voxels after every step of growth, too
+  bool opposite_is_alike{false};  ///< normals differ by 1 − |N₁ · N₂|, so that their sides do not matter
 
   /// @return invalid_argument for a number that is not finite or negative, all weights zero, seeds closer than voxels,
-  /// or rounds that are not from 1 to 100.
+  /// a reach above 100, or rounds that are not from 1 to 100.
   [[nodiscard]] Status validate() const;
   /// Returns the number of voxels that a seed needs within half a seed spacing, which is given in voxels.
   [[nodiscard]] double fewest_around_seed(double spacing_vox) const;
@@ -102,6 +106,10 @@ struct LccpResult {
 /// of the VCCS paper: a seed's own colour represents its surroundings worse than their mean does.
 struct SvLccpConfig {
   SvLccpConfig();
+  /// As the thesis has it (§4.1.2), "the Point Cloud Library implementation": what PCL 1.13 does where nothing is set.
+  /// Seeds stay where they are, and fall away below a twentieth of a plane's voxels. Supervoxels grow once, move with
+  /// every step, and reach eight voxels. Normals have no sides. LCCP is without sanity and smoothness (decision 41).
+  [[nodiscard]] static SvLccpConfig as_printed();
 
   SupervoxelConfig supervoxels;  ///< V_lccp 1 cm, S_lccp 5 cm, weights α_p 0.1, α_n 0.5, α_c 1; 5 rounds
   LccpConfig lccp;

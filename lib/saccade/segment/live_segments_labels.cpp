@@ -189,7 +189,9 @@ void LiveSegments::label_blocks(std::span<const std::uint32_t> slots) {
   std::sort(region.begin(), region.end(),
             [&](std::uint32_t a, std::uint32_t b) { return blocks_->block_before(a, b); });
   const BlockCloud part{*blocks_, region};
-  SupervoxelGrowth growth{part.cloud, VoxelDifference{supervoxel_config_, supervoxel_config_.seed_spacing_m}};
+  SupervoxelConfig growing = supervoxel_config_;
+  growing.moves_in_growth = false;  // means would carry effects farther than the rings
+  SupervoxelGrowth growth{part.cloud, growing};
   growth.seed(part.cell_of, part.cells, kSeedRadius_vox * supervoxel_config_.voxels.voxel_size_m,
               supervoxel_config_.fewest_around_seed(2.0 * kSeedRadius_vox), Executor{});
   // Effects of a seed on blocks beyond the first ring do not come back here within its reach.

@@ -13,6 +13,7 @@ namespace saccade {
 namespace {
 
 constexpr int kMostRounds{100};  // converged long before
+constexpr double kMostReach{100.0};
 
 /// Returns the number of the grid cell of each voxel, and the number of cells.
 std::pair<std::vector<std::uint32_t>, std::size_t> seed_cells(const VoxelCloud& cloud, double spacing) {
@@ -100,11 +101,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> touching(const VoxelCloud& 
 Status SupervoxelConfig::validate() const {
   SACCADE_CHECK(voxels.validate());
   const auto error = [](const char* message) { return Error{Errc::invalid_argument, message, "supervoxels"}; };
-  for (const double number : {seed_spacing_m, spatial_weight, normal_weight, color_weight, min_seed_share}) {
+  for (const double number : {seed_spacing_m, spatial_weight, normal_weight, color_weight, min_seed_share, reach}) {
     if (!(std::isfinite(number) && number >= 0.0)) return error("a number is not finite, or negative");
   }
   if (spatial_weight + normal_weight + color_weight == 0.0) return error("all weights are zero");
   if (seed_spacing_m < voxels.voxel_size_m) return error("seed_spacing_m must be at least voxel_size_m");
+  if (reach > kMostReach) return error("reach must be at most 100");
   if (rounds < 1 || rounds > kMostRounds) return error("rounds must be from 1 to 100");
   return {};
 }
@@ -119,12 +121,13 @@ Result<SupervoxelResult> find_supervoxels(const PointCloud& cloud, const Supervo
   SACCADE_TRY(const VoxelCloud voxels, voxelise(cloud, config.voxels, executor));
   const double spacing_vox = config.seed_spacing_m / config.voxels.voxel_size_m;
   const auto [cell_of, cells] = seed_cells(voxels, config.seed_spacing_m);
-  SupervoxelGrowth growth{voxels, VoxelDifference{config, config.seed_spacing_m}};
+  SupervoxelGrowth growth{voxels, config};
   growth.seed(cell_of, cells, 0.5 * config.seed_spacing_m, config.fewest_around_seed(spacing_vox), executor);
-  SupervoxelGrowth::Grown grown = growth.grow(2.0 * spacing_vox);
+  const double steps = config.reach * spacing_vox;
+  SupervoxelGrowth::Grown grown = growth.grow(steps);
   for (int round = 1; round < config.rounds; ++round) {
     growth.move_to_means(grown);
-    grown = growth.grow(2.0 * spacing_vox);
+    grown = growth.grow(steps);
   }
   const std::vector<std::uint32_t> labels = with_rest(voxels, std::move(grown));
   SupervoxelResult result;

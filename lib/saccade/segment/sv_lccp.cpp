@@ -14,6 +14,19 @@ SvLccpConfig::SvLccpConfig() {
   supervoxels.rounds = 5;
 }
 
+SvLccpConfig SvLccpConfig::as_printed() {
+  SvLccpConfig config;
+  config.supervoxels.rounds = 1;
+  config.supervoxels.seeds_settle = false;
+  config.supervoxels.min_seed_share = 0.05;
+  config.supervoxels.reach = 1.6;  // ⌊1.8 · 5⌋ − 1 steps
+  config.supervoxels.moves_in_growth = true;
+  config.supervoxels.opposite_is_alike = true;
+  config.lccp.sanity = false;
+  config.lccp.smooth = false;
+  return config;
+}
+
 Status SvLccpConfig::validate() const {
   SACCADE_CHECK(supervoxels.validate());
   SACCADE_CHECK(lccp.validate());

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace saccade {
@@ -13,8 +14,12 @@ Eigen::Matrix2d jacobian(const Distortion& d, const Eigen::Vector2d& p) {
   const double x = p.x();
   const double y = p.y();
   const double r2 = p.squaredNorm();
-  const double radial = 1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
-  const double slope = 2.0 * (d.k1 + r2 * (2.0 * d.k2 + r2 * 3.0 * d.k3));  // ∂radial/∂x = slope·x
+  const double over = 1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
+  const double under = 1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6));
+  const double radial = over / under;
+  const double over_slope = d.k1 + r2 * (2.0 * d.k2 + r2 * 3.0 * d.k3);
+  const double under_slope = d.k4 + r2 * (2.0 * d.k5 + r2 * 3.0 * d.k6);
+  const double slope = 2.0 * (over_slope - radial * under_slope) / under;  // ∂radial/∂x = slope·x
   Eigen::Matrix2d j;
   j << radial + slope * x * x + 2.0 * d.p1 * y + 6.0 * d.p2 * x, slope * x * y + 2.0 * d.p1 * x + 2.0 * d.p2 * y,
       slope * x * y + 2.0 * d.p1 * x + 2.0 * d.p2 * y, radial + slope * y * y + 6.0 * d.p1 * y + 2.0 * d.p2 * x;
@@ -30,11 +35,19 @@ Error wrong_size(int width, int height, int camera_width, int camera_height) {
 
 }  // namespace
 
+std::optional<Distortion> Distortion::from_coefficients(std::span<const double> coefficients) {
+  for (std::size_t i = kMaxCoefficients; i < coefficients.size(); ++i) {
+    if (coefficients[i] != 0.0) return std::nullopt;
+  }
+  const auto at = [&](std::size_t i) { return i < coefficients.size() ? coefficients[i] : 0.0; };
+  return Distortion{at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)};
+}
+
 Eigen::Vector2d Distortion::distort(const Eigen::Vector2d& ideal) const {
   const double x = ideal.x();
   const double y = ideal.y();
   const double r2 = ideal.squaredNorm();
-  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double radial = (1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1.0 + r2 * (k4 + r2 * (k5 + r2 * k6)));
   return {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
           y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
 }
@@ -42,10 +55,29 @@ Eigen::Vector2d Distortion::distort(const Eigen::Vector2d& ideal) const {
 bool Distortion::regular_at(const Eigen::Vector2d& ideal) const {
   constexpr int kSteps{16};
   for (int i = 1; i <= kSteps; ++i) {
-    const Eigen::Matrix2d j = jacobian(*this, ideal * (static_cast<double>(i) / kSteps));
+    const Eigen::Vector2d on_the_way = ideal * (static_cast<double>(i) / kSteps);
+    const double r2 = on_the_way.squaredNorm();
+    if (!(1.0 + r2 * (k4 + r2 * (k5 + r2 * k6)) > 0.0)) return false;  // beyond a pole
+    const Eigen::Matrix2d j = jacobian(*this, on_the_way);
     if (!(j.determinant() > 0.0) || !(j.trace() > 0.0)) return false;
   }
   return true;
+}
+
+double Distortion::regular_radius() const {
+  constexpr int kDirections{16};
+  constexpr double kStep{0.02};
+  constexpr double kLargest{4.0};
+  double radius = 0.0;
+  while (radius < kLargest) {
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kDirections;
+      const Eigen::Vector2d edge{std::cos(angle) * (radius + kStep), std::sin(angle) * (radius + kStep)};
+      if (!regular_at(edge)) return radius;
+    }
+    radius += kStep;
+  }
+  return radius;
 }
 
 std::optional<Eigen::Vector2d> Distortion::undistort(const Eigen::Vector2d& distorted) const {
@@ -70,7 +102,7 @@ std::optional<Eigen::Vector2d> Distortion::undistort(const Eigen::Vector2d& dist
 }
 
 Status Distortion::validate() const {
-  for (const double k : {k1, k2, p1, p2, k3}) {
+  for (const double k : {k1, k2, p1, p2, k3, k4, k5, k6}) {
     if (!std::isfinite(k)) return Error{Errc::invalid_argument, "distortion coefficients must be finite", "camera"};
   }
   return {};

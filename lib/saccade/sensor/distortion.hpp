@@ -3,8 +3,10 @@
 // Distortion: Brown–Conrady lens model; Undistorter: images of a real lens → images of the ideal pinhole camera.
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "saccade/core/result.hpp"
@@ -13,14 +15,24 @@
 
 namespace saccade {
 
-/// Brown–Conrady coefficients in the order of OpenCV and ROS ("plumb bob"): with r² = x² + y² on the plane z = 1,
-/// x' = x·(1 + k1 r² + k2 r⁴ + k3 r⁶) + 2 p1 x y + p2 (r² + 2 x²), y' likewise with p1 and p2 exchanged.
+/// Brown–Conrady coefficients in the order of OpenCV and ROS: with r² = x² + y² on the plane z = 1,
+/// x' = x·(1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶) + 2 p1 x y + p2 (r² + 2 x²), y' likewise with p1
+/// and p2 exchanged. The first five are the "plumb bob" model, all eight the "rational polynomial" one.
 struct Distortion {
   double k1{0.0};
   double k2{0.0};
   double p1{0.0};
   double p2{0.0};
   double k3{0.0};
+  double k4{0.0};
+  double k5{0.0};
+  double k6{0.0};
+
+  /// Number of coefficients that OpenCV and ROS write.
+  static constexpr std::size_t kMaxCoefficients{8};
+  /// Makes a lens of up to eight coefficients in this order; those left out are 0. nullopt where one beyond the eighth
+  /// is not 0 (a thin prism, a tilted sensor).
+  [[nodiscard]] static std::optional<Distortion> from_coefficients(std::span<const double> coefficients);
 
   /// Ideal point (x, y) on the plane z = 1 → where the lens puts it.
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& ideal) const;
@@ -28,6 +40,9 @@ struct Distortion {
   [[nodiscard]] std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
   /// Tells whether the model is one to one at this ideal point (its Jacobian is positive there and on the way to it).
   [[nodiscard]] bool regular_at(const Eigen::Vector2d& ideal) const;
+  /// Returns a radius on the plane z = 1 within which the model is one to one in every direction, at most 4. O(1), but
+  /// thousands of operations.
+  [[nodiscard]] double regular_radius() const;
 
   [[nodiscard]] bool is_zero() const { return *this == Distortion{}; }
   /// invalid_argument for NaN or infinity.

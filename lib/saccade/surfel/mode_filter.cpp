@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "saccade/core/clock.hpp"
@@ -28,6 +29,15 @@ void add_counts(ModeFilterReport& sum, const ModeFilterReport& counts) {
 }
 
 }  // namespace
+
+ModeFilterConfig ModeFilterConfig::as_printed() {
+  ModeFilterConfig config;
+  config.enhance_depth = true;
+  config.max_depth_change_m = std::numeric_limits<double>::infinity();
+  config.choice_sigmas = 0.0;
+  config.sharpening.strength = 0.0;
+  return config;
+}
 
 Status ModeFilterConfig::validate() const {
   SACCADE_CHECK(guided.validate());

@@ -39,6 +39,10 @@ struct ModeFilterConfig {
   double choice_sigmas{8.0};
   ModeSharpeningConfig sharpening{};  ///< contribution of the neighbours' modes; no effect on the heaviest mode
 
+  /// Algorithm 6 and eq. 4.11 to the letter: the heaviest mode, at its own place, with depths as far as the guided
+  /// filter moves them (decisions 18, 19, 41).
+  [[nodiscard]] static ModeFilterConfig as_printed();
+
   /// Answers invalid_argument for a bad guided filter or bad sharpening, K or a change of depth that is not positive,
   /// M_max outside 1 to 32, or choice_sigmas that are negative or not finite.
   [[nodiscard]] Status validate() const;

@@ -58,7 +58,7 @@ std::string judge(const NormalEquations& sums, const IcpResult& result, const Po
     return "only " + percent(result.agreement) + " of the measured pixels before the map's surface lie at its depth";
   }
   if (result.rmse_m > config.max_rmse_m) return "the measured surface stays off the map's";
-  if (constraint(sums.JtJ) < config.min_constraint) return "the visible surface does not determine the camera's motion";
+  if (result.constraint < config.min_constraint) return "the visible surface does not determine the camera's motion";
   const Pose moved = start.inverse() * result.T_model_camera;
   if (moved.translation().norm() > config.max_translation_m || rotation_angle_rad(moved) > config.max_rotation_rad) {
     return "the motion found is larger than a camera makes between two frames";
@@ -111,6 +111,7 @@ Result<IcpResult> align_by(const Linearization& linearize, const PointImage& mea
   if (sums.pairs > 0) result.rmse_m = std::sqrt(sums.squared_residuals / static_cast<double>(sums.pairs));
   const Level coarsest{measured, config.strides.front()};
   result.agreement = agreement(coarsest.points(), model, camera, result.T_model_camera);
+  result.constraint = constraint(sums.JtJ);
   result.why = judge(sums, result, T_model_camera_start, config);
   result.converged = result.why.empty();
   return result;

@@ -36,6 +36,7 @@ struct IcpResult {
   int iterations{0};
   double inlier_share{0.0};  ///< pairs / measured pixels, at the finest level
   double agreement{0.0};     ///< share at the model's depth, among measured pixels where the model has a surface
+  double constraint{0.0};    ///< smallest over largest eigenvalue of the normal equations, rotations in arcs of a metre
   double rmse_m{0.0};        ///< root mean square of the point-to-plane distances
 };
 

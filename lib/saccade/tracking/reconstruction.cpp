@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/tracking/reconstruction.hpp"
 
+#include <utility>
+
 #include "saccade/core/clock.hpp"
 #include "saccade/map/raycast.hpp"
 
@@ -20,6 +22,7 @@ Result<FrameReport> track_frame(const TsdfSnapshot& map, const Frame& frame, con
   const PointImage measured = to_points(frame.depth, camera, executor);
   report.icp = align(measured, model, camera, Pose::Identity(), executor, icp);
   report.track_ms = stopwatch.lap_ms();
+  report.confidence = tracking_confidence(report.icp, icp);
   if (report.icp.converged) {
     report.T_world_camera = T_world_start * report.icp.T_model_camera;
   } else {
@@ -31,19 +34,39 @@ Result<FrameReport> track_frame(const TsdfSnapshot& map, const Frame& frame, con
 
 Result<Reconstruction> Reconstruction::create(const ReconstructionConfig& config) {
   SACCADE_CHECK(config.icp.validate());
+  SACCADE_CHECK(config.rgbd.validate());
   SACCADE_TRY(TsdfMap map, TsdfMap::create(config.map));
-  return Reconstruction{std::move(map), config.icp};
+  return Reconstruction{std::move(map), config.icp, config.rgbd};
 }
 
-Result<Reconstruction> Reconstruction::resume(TsdfSnapshot content, const IcpConfig& icp) {
+Result<Reconstruction> Reconstruction::resume(TsdfSnapshot content, const IcpConfig& icp,
+                                              const RgbdTrackerConfig& rgbd) {
   SACCADE_CHECK(icp.validate());
+  SACCADE_CHECK(rgbd.validate());
   SACCADE_CHECK(content.config.validate());
-  return Reconstruction{TsdfMap{std::move(content)}, icp};
+  return Reconstruction{TsdfMap{std::move(content)}, icp, rgbd};
 }
 
 void Reconstruction::resume(const Pose& T_world_camera_hint) {
   suspended_ = false;
   T_world_resume_ = T_world_camera_hint;
+  tracker_.moved_to(T_world_camera_hint);
+}
+
+SurfaceAt Reconstruction::seen_surface(const PinholeCamera& camera, const Executor& executor) {
+  return [this, &camera, &executor](const Pose& T_world_camera) -> Result<PointImage> {
+    SACCADE_CHECK(map_.look_from(camera, T_world_camera, executor));
+    return surface_of_map(map_.content(), camera, executor)(T_world_camera);
+  };
+}
+
+TsdfMap Reconstruction::exchange_map(TsdfMap map, const Pose& T_world_camera_last) {
+  TsdfMap until_now = std::exchange(map_, std::move(map));
+  T_world_last_ = T_world_camera_last;
+  T_world_resume_.reset();
+  tracker_ = RgbdTracker{tracker_.config()};  // its keyframes lie in the world of the earlier poses
+  tracker_.moved_to(T_world_camera_last);
+  return until_now;
 }
 
 Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCamera& camera, TrackingMode mode,
@@ -54,7 +77,7 @@ Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCam
     report.status = FrameReport::Status::suspended;
     return report;
   }
-  if (mode != TrackingMode::icp && !hint) {
+  if (needs_pose(mode) && !hint) {
     return Error{Errc::invalid_argument, "this tracking mode needs a pose for every frame", frame.name};
   }
   const bool map_is_empty = map_.content().grid.empty();
@@ -66,7 +89,12 @@ Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCam
     const Pose resumed_or_last = T_world_resume_.value_or(T_world_last_.value_or(Pose::Identity()));
     const Pose& start = mode == TrackingMode::hint ? *hint : resumed_or_last;
     const Pose kept = report.T_world_camera;
-    SACCADE_TRY(report, track_frame(map_.content(), frame, camera, start, executor, icp_));
+    if (mode == TrackingMode::rgbd) {
+      SACCADE_TRY(report, tracker_.track(seen_surface(camera, executor), frame, camera, executor));
+    } else {
+      SACCADE_CHECK(map_.look_from(camera, start, executor));
+      SACCADE_TRY(report, track_frame(map_.content(), frame, camera, start, executor, icp_));
+    }
     if (report.status == FrameReport::Status::lost) {
       report.T_world_camera = kept;
       return report;
@@ -75,6 +103,7 @@ Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCam
   const ColorImage* color = frame.color ? &*frame.color : nullptr;
   SACCADE_TRY(report.fusion, map_.integrate(camera, frame.depth, report.T_world_camera, executor, color));
   report.integrate_ms = report.fusion.ms;
+  if (mode == TrackingMode::rgbd) tracker_.fused(frame, camera, report.T_world_camera, executor);
   T_world_last_ = report.T_world_camera;
   T_world_resume_.reset();
   return report;

@@ -8,7 +8,9 @@
 #include "saccade/core/names.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/sensor/camera.hpp"
+#include "saccade/tracking/frame_report.hpp"
 #include "saccade/tracking/icp.hpp"
+#include "saccade/tracking/rgbd_tracker.hpp"
 
 namespace saccade {
 
@@ -17,31 +19,22 @@ enum class TrackingMode {
   icp,     ///< ICP started at the last pose (HINT_TYPE_NONE)
   hint,    ///< ICP started at the given pose (HINT_TYPE_HINT)
   forced,  ///< the given pose is used unchanged (HINT_TYPE_FORCED)
+  rgbd,    ///< RgbdTracker: ICP with colours, started where the last motion leads
 };
-inline constexpr auto kTrackingModeNames = make_names<TrackingMode>(
-    {{TrackingMode::icp, "icp"}, {TrackingMode::hint, "hint"}, {TrackingMode::forced, "forced"}});
+inline constexpr auto kTrackingModeNames = make_names<TrackingMode>({{TrackingMode::icp, "icp"},
+                                                                     {TrackingMode::rgbd, "rgbd"},
+                                                                     {TrackingMode::hint, "hint"},
+                                                                     {TrackingMode::forced, "forced"}});
 [[nodiscard]] constexpr std::string_view to_string(TrackingMode mode) { return kTrackingModeNames.of(mode); }
+/// Tells whether a mode needs a pose for every frame.
+[[nodiscard]] constexpr bool needs_pose(TrackingMode mode) {
+  return mode == TrackingMode::hint || mode == TrackingMode::forced;
+}
 
 struct ReconstructionConfig {
   TsdfConfig map;
   IcpConfig icp;
-};
-
-/// Result of processing one frame.
-struct FrameReport {
-  enum class Status {
-    fused,
-    lost,       ///< no pose was found: the map is untouched and the last good pose is kept
-    suspended,  ///< fusion is suspended: the frame is ignored
-  };
-  Status status{Status::fused};
-  std::string why;  ///< reason when lost
-  Pose T_world_camera{Pose::Identity()};
-  IcpResult icp;  ///< set when ICP ran
-  FusionStats fusion;
-  double raycast_ms{0.0};
-  double track_ms{0.0};
-  double integrate_ms{0.0};
+  RgbdTrackerConfig rgbd{};  ///< for mode rgbd
 };
 
 /// Finds the pose of a frame by ICP against the map as seen from `T_world_start`. Fuses nothing. A lost track is a
@@ -56,10 +49,12 @@ class Reconstruction {
  public:
   [[nodiscard]] static Result<Reconstruction> create(const ReconstructionConfig& config);
   /// Continues with an existing map, for example a loaded one, and its configuration.
-  [[nodiscard]] static Result<Reconstruction> resume(TsdfSnapshot content, const IcpConfig& icp);
+  [[nodiscard]] static Result<Reconstruction> resume(TsdfSnapshot content, const IcpConfig& icp,
+                                                     const RgbdTrackerConfig& rgbd = {});
 
   /// Tracks and fuses one frame.
-  /// @param hint T_world_camera; needed for modes hint and forced. In mode icp, the pose of the first frame (identity
+  /// @param hint T_world_camera; needed for modes hint and forced. In modes icp and rgbd, the pose of the first frame
+  /// (identity
   ///        without one); afterwards unused.
   /// @return the result; a lost track is not an error. Errors: size_mismatch, invalid_argument (no hint where one is
   /// needed, a bad camera or pose).
@@ -72,16 +67,23 @@ class Reconstruction {
   void resume(const Pose& T_world_camera_hint);
   [[nodiscard]] bool suspended() const { return suspended_; }
 
+  /// Goes on with another map, in which the last frame has another pose: corrected ones. @return the map until now.
+  [[nodiscard]] TsdfMap exchange_map(TsdfMap map, const Pose& T_world_camera_last);
+
   [[nodiscard]] TsdfMap& map() { return map_; }
   [[nodiscard]] const TsdfMap& map() const { return map_; }
   /// Returns the pose of the last fused frame.
   [[nodiscard]] const std::optional<Pose>& last_pose() const { return T_world_last_; }
 
  private:
-  Reconstruction(TsdfMap map, const IcpConfig& icp) : map_{std::move(map)}, icp_{icp} {}
+  /// Returns the ray cast of the map, with what is paged out brought in.
+  [[nodiscard]] SurfaceAt seen_surface(const PinholeCamera& camera, const Executor& executor);
+  Reconstruction(TsdfMap map, const IcpConfig& icp, const RgbdTrackerConfig& rgbd)
+      : map_{std::move(map)}, icp_{icp}, tracker_{rgbd} {}
 
   TsdfMap map_;
   IcpConfig icp_;
+  RgbdTracker tracker_;
   bool suspended_{false};
   std::optional<Pose> T_world_last_;
   std::optional<Pose> T_world_resume_;

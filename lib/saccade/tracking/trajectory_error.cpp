@@ -33,7 +33,7 @@ Result<TrajectoryError> trajectory_error(std::span<const Pose> T_world_estimated
     aligned = (T_aligned.topLeftCorner<3, 3>() * estimated).colwise() + T_aligned.topRightCorner<3, 1>();
   }
   return TrajectoryError{T_world_true.size(), rmse(joined - truth), rmse(aligned - truth),
-                         (aligned - truth).colwise().norm().maxCoeff()};
+                         (aligned - truth).colwise().norm().maxCoeff(), (joined - truth).rightCols<1>().norm()};
 }
 
 }  // namespace saccade

@@ -20,6 +20,7 @@ struct TrajectoryError {
   double first_pose_rmse_m{0.0};  ///< both trajectories joined at their first pose: contains all drift
   double aligned_rmse_m{0.0};     ///< after the rigid motion (no scale) that makes it smallest
   double max_m{0.0};              ///< largest distance after the same rigid motion
+  double last_pose_m{0.0};        ///< distance of the last positions, with both joined at their first pose
 };
 
 /// Compares pose i of one trajectory with pose i of the other; the absolute trajectory error of Sturm et al. (IROS

@@ -11,8 +11,6 @@
 namespace saccade {
 namespace {
 
-constexpr int kBusy_ms{10000};
-
 constexpr const char* kInsertRun{R"sql(
 INSERT INTO runs (scene, scene_hash, strategy, noise, seed, settings, views, stopped_because, seconds, program_version,
   finished_at, scan_views, scan_refused, refused_at_end, initial_coverage, initial_unknown_left,
@@ -34,11 +32,11 @@ SELECT id, scene, scene_hash, strategy, noise, seed, settings, stopped_because, 
   initial_accuracy_m, initial_chamfer_m, initial_f_score
 FROM runs )sql"};
 
-constexpr const char* kSelectViews{R"sql(
-SELECT region, gain, gain_observed, T_world_camera, candidates, evaluated, refused, frames, points_at_object,
-  looks_at_object, path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms, planning_ms, motion_ms,
-  fusion_ms, coverage, unknown_left, unknown_near_objects, accuracy_m, chamfer_m, f_score
-FROM views WHERE run = ? ORDER BY number)sql"};
+// The columns that view_of reads.
+constexpr const char* kReadViewColumns{R"sql(region, gain, gain_observed, candidates, evaluated, refused, frames,
+  points_at_object, looks_at_object, path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms,
+  reachability_ms, evaluation_ms, planning_ms, motion_ms, fusion_ms, coverage, unknown_left, unknown_near_objects,
+  accuracy_m, chamfer_m, f_score)sql"};
 
 constexpr const char* kWhereKey{
     "WHERE scene = ? AND scene_hash = ? AND strategy = ? AND noise = ? AND seed = ? AND settings = ?"};
@@ -76,7 +74,9 @@ Measures measures_of(SqliteStatement& row) {
 }
 
 Result<RefusalCounts> refusals_of(SqliteStatement& row) {
-  SACCADE_TRY(const nlohmann::json counts, parse_json(row.text()));
+  const std::string text = row.text();
+  if (text == "{}") return RefusalCounts{};
+  SACCADE_TRY(const nlohmann::json counts, parse_json(text));
   return refusals_from_json(counts);
 }
 
@@ -134,37 +134,46 @@ Status insert_views(const SqliteFile& file, const std::vector<ViewRecord>& views
   return {};
 }
 
+/// Reads the next columns of the row, kReadViewColumns; the pose is not among them.
+Result<ViewRecord> view_of(SqliteStatement& row) {
+  ViewRecord view;
+  view.region = static_cast<std::size_t>(row.integer());
+  view.gain_predicted = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
+  view.gain_observed = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
+  view.candidates = static_cast<std::size_t>(row.integer());
+  view.evaluated = static_cast<std::size_t>(row.integer());
+  SACCADE_TRY(view.refused, refusals_of(row));
+  view.frames = static_cast<std::size_t>(row.integer());
+  view.reveals_object = row.integer() != 0;
+  view.looks_at_object = row.integer() != 0;
+  view.path_m = row.real();
+  view.motion_s = row.real();
+  for (const Phase phase : kPhaseNames.values) view.times.add(phase, row.real());
+  view.measures = measures_of(row);
+  return view;
+}
+
 Result<std::vector<ViewRecord>> views_of(const SqliteFile& file, std::int64_t run) {
   std::vector<ViewRecord> views;
-  SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file, kSelectViews));
+  SACCADE_TRY(SqliteStatement row,
+              SqliteStatement::prepare(file, std::string{"SELECT T_world_camera, "} + kReadViewColumns +
+                                                 " FROM views WHERE run = ? ORDER BY number"));
   row.bind(run);
   while (true) {
     SACCADE_TRY(const bool more, row.step());
     if (!more) return views;
-    ViewRecord view;
-    view.region = static_cast<std::size_t>(row.integer());
-    view.gain_predicted = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
-    view.gain_observed = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
     SACCADE_TRY(const nlohmann::json pose, parse_json(row.text()));
-    SACCADE_TRY(view.T_world_camera, pose_from_json(pose));
-    view.candidates = static_cast<std::size_t>(row.integer());
-    view.evaluated = static_cast<std::size_t>(row.integer());
-    SACCADE_TRY(view.refused, refusals_of(row));
-    view.frames = static_cast<std::size_t>(row.integer());
-    view.reveals_object = row.integer() != 0;
-    view.looks_at_object = row.integer() != 0;
-    view.path_m = row.real();
-    view.motion_s = row.real();
-    for (const Phase phase : kPhaseNames.values) view.times.add(phase, row.real());
-    view.measures = measures_of(row);
+    SACCADE_TRY(const Pose T_world_camera, pose_from_json(pose));
+    SACCADE_TRY(ViewRecord view, view_of(row));
+    view.T_world_camera = T_world_camera;
     views.push_back(std::move(view));
   }
 }
 
-/// Reads the run of the statement's row.
-Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
+/// Reads the run of the statement's row, but for its views.
+Result<CampaignEntry> run_of(SqliteStatement& row, std::int64_t& id) {
   CampaignEntry entry;
-  const std::int64_t id = row.integer();
+  id = row.integer();
   entry.key.scene = row.text();
   entry.key.scene_hash = row.text();
   entry.key.strategy = row.text();
@@ -182,6 +191,12 @@ Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
   SACCADE_TRY(entry.run.scan.refused, refusals_of(row));
   SACCADE_TRY(entry.run.refused_at_end, refusals_of(row));
   entry.run.scan.measures = measures_of(row);
+  return entry;
+}
+
+Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
+  std::int64_t id = 0;
+  SACCADE_TRY(CampaignEntry entry, run_of(row, id));
   SACCADE_TRY(entry.run.views, views_of(file, id));
   return entry;
 }
@@ -189,7 +204,7 @@ Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
 }  // namespace
 
 Result<Campaign> Campaign::open(const std::filesystem::path& path) {
-  SACCADE_TRY(SqliteFile file, SqliteFile::open(path, kBusy_ms));
+  SACCADE_TRY(SqliteFile file, SqliteFile::open(path, kCampaignBusy_ms));
   SACCADE_CHECK(file.run("PRAGMA synchronous = EXTRA; PRAGMA foreign_keys = ON"));
   {
     SACCADE_TRY(SqliteTransaction transaction, SqliteTransaction::begin(file));
@@ -247,6 +262,32 @@ Result<std::vector<CampaignEntry>> Campaign::runs() const {
     if (!more) return runs;
     SACCADE_TRY(CampaignEntry entry, entry_of(file_, row));
     runs.push_back(std::move(entry));
+  }
+}
+
+Result<std::vector<CampaignEntry>> Campaign::figures(const std::function<bool(const CampaignKey& key)>& wanted) const {
+  std::vector<CampaignEntry> runs;
+  // Both tables are in the order of the runs.
+  SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file_, std::string{kSelectRuns} + "ORDER BY id"));
+  SACCADE_TRY(SqliteStatement view, SqliteStatement::prepare(file_, std::string{"SELECT run, "} + kReadViewColumns +
+                                                                        " FROM views ORDER BY run, number"));
+  SACCADE_TRY(bool has_view, view.step());
+  std::int64_t of_view = has_view ? view.integer() : 0;
+  while (true) {
+    SACCADE_TRY(const bool more, row.step());
+    if (!more) return runs;
+    std::int64_t id = 0;
+    SACCADE_TRY(CampaignEntry entry, run_of(row, id));
+    const bool chosen = wanted(entry.key);
+    while (has_view && of_view <= id) {
+      if (chosen && of_view == id) {
+        SACCADE_TRY(ViewRecord read, view_of(view));
+        entry.run.views.push_back(std::move(read));
+      }
+      SACCADE_TRY(has_view, view.step());
+      of_view = has_view ? view.integer() : 0;
+    }
+    if (chosen) runs.push_back(std::move(entry));
   }
 }
 

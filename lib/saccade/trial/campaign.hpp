@@ -5,7 +5,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +37,22 @@ struct CampaignEntry {
   std::string finished_at;  ///< UTC, as 2024-06-30T12:00:00Z; set when the run is stored
 };
 
+/// A run's key and what tells how it came about, without its measures.
+struct StoredRun {
+  CampaignKey key;
+  std::size_t views{0};  ///< taken
+  std::string program_version;
+};
+
+/// Result of a merge.
+struct CampaignMerge {
+  std::size_t added{0};
+  std::size_t known{0};  ///< runs that the campaign had, with the same measures
+};
+
+/// Tells whether a run belongs to the campaign; the error says why not.
+using AcceptRun = std::function<Status(const StoredRun& run)>;
+
 /// Open campaign file. A run is stored in one transaction that reaches the disk before add() returns: it survives any
 /// later end of the program, and an unfinished run leaves no trace. Several processes may use one file at once; each
 /// waits up to ten seconds for the others. One thread. Errors carry the file's path: those of SqliteFile.
@@ -45,6 +63,13 @@ class Campaign {
   /// for one of a newer Saccade.
   [[nodiscard]] static Result<Campaign> open(const std::filesystem::path& path);
 
+  /// Opens a file that exists, to read it. Never writes to it, but for undoing what a killed process left half done. An
+  /// empty file is a campaign without runs: check_whole(), for_each_stored() and merge() take it. Answers not_found;
+  /// invalid_argument for another program's database; unsupported for one of another version of Saccade.
+  [[nodiscard]] static Result<Campaign> open_to_read(const std::filesystem::path& path);
+  /// Reads the file from end to end. corrupt_data for one that is damaged or was cut short.
+  [[nodiscard]] Status check_whole() const;
+
   [[nodiscard]] Result<bool> has(const CampaignKey& key) const;
   /// @return whether the run was stored; false when a run with its key exists, which stays. invalid_argument for a seed
   /// of 2⁶³ or more, and for a measure that is not finite.
@@ -53,11 +78,26 @@ class Campaign {
   [[nodiscard]] Result<std::optional<CampaignEntry>> find(const CampaignKey& key) const;
   /// Returns all runs in the order in which they were stored.
   [[nodiscard]] Result<std::vector<CampaignEntry>> runs() const;
+  /// Returns the runs for which `wanted` is true, in the order in which they were stored, with their measures but
+  /// without the poses of their views, which stay the identity: one pass over the file, for statistics of many runs.
+  [[nodiscard]] Result<std::vector<CampaignEntry>> figures(
+      const std::function<bool(const CampaignKey& key)>& wanted) const;
+  /// Calls `take` with each run, without its measures, in the order in which they were stored; ends at the first error.
+  [[nodiscard]] Status for_each_stored(const AcceptRun& take) const;
+
+  /// Adds the runs of other campaign files as they stand there, times included, in one transaction: after an error the
+  /// campaign is as it was. `accept` is asked about each run that the campaign lacks. A run that it has stays; where it
+  /// has other measures (times aside), invalid_argument names it. Further errors: those of open_to_read and
+  /// check_whole, and of `accept`; an empty context becomes the file's path. The order of the files changes no measure.
+  [[nodiscard]] Result<CampaignMerge> merge(std::span<const std::filesystem::path> files,
+                                            const AcceptRun& accept) const;
 
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
 
  private:
   explicit Campaign(SqliteFile file) : file_{std::move(file)} {}
+  /// Within the caller's transaction.
+  [[nodiscard]] Status take_runs(const Campaign& shard, const AcceptRun& accept, CampaignMerge& merged) const;
   SqliteFile file_;
 };
 

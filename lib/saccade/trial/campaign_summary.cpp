@@ -24,23 +24,30 @@ Runs runs_of(std::span<const CampaignEntry> runs, const CampaignGroup& group) {
   return chosen;
 }
 
-/// Returns the mean of `figure` over runs, or over scenes, without those that lack it.
+/// Returns the mean of `figure` over runs, or over scenes, without those that lack it. Calls it once for each run, in
+/// their order.
 template <class Figure>
 MeanEstimate mean_of(const Runs& runs, bool by_scene, const Figure& figure) {
-  std::vector<std::string> scenes;
-  std::vector<std::vector<double>> values;
+  std::vector<std::string_view> scenes;
+  std::vector<std::vector<double>> values;  // by scene
+  std::vector<double> means;
+  std::size_t scene = 0;  // runs of one scene follow each other, as a rule
   for (const CampaignEntry* run : runs) {
     const std::optional<double> value = figure(*run);
     if (!value) continue;
-    auto scene = by_scene ? std::find(scenes.begin(), scenes.end(), run->key.scene) : scenes.end();
-    if (scene == scenes.end()) {
-      scenes.push_back(run->key.scene);
-      values.emplace_back();
-      scene = std::prev(scenes.end());
+    if (!by_scene) {
+      means.push_back(*value);
+      continue;
     }
-    values[static_cast<std::size_t>(scene - scenes.begin())].push_back(*value);
+    if (scene >= scenes.size() || scenes[scene] != run->key.scene) {
+      scene = static_cast<std::size_t>(std::find(scenes.begin(), scenes.end(), run->key.scene) - scenes.begin());
+    }
+    if (scene == scenes.size()) {
+      scenes.emplace_back(run->key.scene);
+      values.emplace_back();
+    }
+    values[scene].push_back(*value);
   }
-  std::vector<double> means;
   for (const std::vector<double>& of_scene : values) means.push_back(mean(of_scene));
   return estimate_mean(means);
 }
@@ -134,13 +141,19 @@ std::vector<MeanEstimate> paired_gaps(std::span<const CampaignEntry> runs, const
   std::map<std::pair<std::string, std::uint64_t>, const CampaignEntry*> of_b;
   for (const CampaignEntry* run : runs_of(runs, b)) of_b.try_emplace({run->key.scene, run->key.seed}, run);
   const Runs of_a = runs_of(runs, a);
+  Runs twins;  // null: there is none
+  for (const CampaignEntry* run : of_a) {
+    const auto twin = of_b.find({run->key.scene, run->key.seed});
+    twins.push_back(twin == of_b.end() ? nullptr : twin->second);
+  }
   std::vector<MeanEstimate> gaps;
   for (const RunFigure& figure : run_figures()) {
+    std::size_t next = 0;
     gaps.push_back(mean_of(of_a, !a.scene, [&](const CampaignEntry& run) -> std::optional<double> {
-      const auto twin = of_b.find({run.key.scene, run.key.seed});
-      if (twin == of_b.end()) return std::nullopt;
+      const CampaignEntry* twin = twins[next++];
+      if (twin == nullptr) return std::nullopt;
       const std::optional<double> of_run = figure.of(run, budget);
-      const std::optional<double> of_twin = figure.of(*twin->second, budget);
+      const std::optional<double> of_twin = figure.of(*twin, budget);
       if (!of_run || !of_twin) return std::nullopt;
       return *of_run - *of_twin;
     }));

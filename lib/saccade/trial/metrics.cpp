@@ -14,12 +14,11 @@ namespace {
 using Eigen::Vector3d;
 
 /// Returns the points of the mesh inside the workspace that do not lie on a support.
-std::vector<Eigen::Vector3f> points_off_supports(const GroundTruth& truth, const TriangleMesh& mesh,
-                                                 double voxel_size_m) {
+std::vector<Eigen::Vector3f> points_off_supports(const GroundTruth& truth, const TriangleMesh& mesh, double within_m) {
   const Box& workspace = truth.scene().scene().workspace;
   std::vector<Eigen::Vector3f> points;
   for (const Eigen::Vector3f& point : sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m(), workspace).points) {
-    if (truth.to_supports_m(point.cast<double>(), 2.0 * voxel_size_m) > voxel_size_m) points.push_back(point);
+    if (truth.to_supports_m(point.cast<double>(), 2.0 * within_m) > within_m) points.push_back(point);
   }
   return points;
 }
@@ -145,8 +144,13 @@ bool looks_at_object(const GroundTruth& truth, const Pose& T_world_camera) {
 }
 
 Metrics measure(const GroundTruth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {
-  Metrics metrics;
+  Metrics metrics = measure_mesh(truth, mesh, map.config.voxel_size_m, executor);
   metrics.unknown_near_objects = unknown_near_objects(truth, map, executor);
+  return metrics;
+}
+
+Metrics measure_mesh(const GroundTruth& truth, const TriangleMesh& mesh, double within_m, const Executor& executor) {
+  Metrics metrics;
   if (mesh.triangles.empty()) return metrics;
   const auto built = MeshDistance::build(mesh);
   SACCADE_EXPECTS(built.ok());
@@ -164,9 +168,9 @@ Metrics measure(const GroundTruth& truth, const TsdfSnapshot& map, const Triangl
   const auto within = [](const std::vector<double>& distances, double limit) {
     return static_cast<double>(std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
   };
-  metrics.coverage = share(within(missing_m, map.config.voxel_size_m), wanted.size());
+  metrics.coverage = share(within(missing_m, within_m), wanted.size());
 
-  const std::vector<Eigen::Vector3f> found = points_off_supports(truth, mesh, map.config.voxel_size_m);
+  const std::vector<Eigen::Vector3f> found = points_off_supports(truth, mesh, within_m);
   if (found.empty()) return metrics;
   std::vector<double> wrong_m(found.size());
   executor.parallel_for(found.size(), 256, [&](std::size_t begin, std::size_t end) {

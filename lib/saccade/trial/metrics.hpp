@@ -74,6 +74,11 @@ constexpr double kNearObjects_m{0.03};
 [[nodiscard]] Metrics measure(const GroundTruth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh,
                               const Executor& executor);
 
+/// Measures a mesh alone; unknown_near_objects stays 0. A point is covered within within_m of the mesh, and a point of
+/// the mesh lies on a support within that distance of it. O(samples · log triangles). The thread count changes no bit.
+[[nodiscard]] Metrics measure_mesh(const GroundTruth& truth, const TriangleMesh& mesh, double within_m,
+                                   const Executor& executor);
+
 /// Unknown voxels in the workspace outside the solids, their centre within kNearObjects_m of an object's surface.
 [[nodiscard]] std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& map,
                                                const Executor& executor);

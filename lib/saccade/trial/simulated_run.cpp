@@ -10,6 +10,8 @@
 #include "saccade/trial/internal/oracle_gain.hpp"
 #include "saccade/trial/internal/pair_oracle.hpp"
 #include "saccade/trial/recorded_run.hpp"
+#include "saccade/trial/surfel_measures.hpp"
+#include "saccade/views/fixed_views.hpp"
 
 namespace saccade {
 namespace {
@@ -27,6 +29,11 @@ Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRun
   SACCADE_TRY(PlannedArm robot, planned_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
   return std::unique_ptr<Robot>{std::make_unique<PlannedArm>(std::move(robot))};
 }
+
+/// Runs an exploration; surfels are nullptr where the map is a volume.
+Result<RunRecord> run_with(const GroundTruth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
+                           SurfelModel* surfels, Recorder& recorder, const Executor& executor,
+                           const Progress& progress);
 
 /// Fills in the straight paths of a flying camera. It begins at the last pose of the scan, unless one was skipped.
 void measure_flights(RunRecord& run, const std::vector<Pose>& scan) {
@@ -51,6 +58,9 @@ Status SimulatedRunConfig::validate() const {
   SACCADE_CHECK(exploration.validate());
   SACCADE_CHECK(map().validate());
   if (arm) SACCADE_CHECK(arm_robot.validate());
+  if (fixed_views && fixed_views->empty()) {
+    return Error{Errc::invalid_argument, "there is no view in the set of candidates", "exploration"};
+  }
   if (gain_width_px < 1) {
     return Error{Errc::invalid_argument, "the virtual sensor must be one pixel wide at least", "exploration"};
   }
@@ -66,7 +76,7 @@ SimulatedRunConfig SimulatedRunConfig::with(const NamedPlanner& named) const {
 
 TsdfConfig SimulatedRunConfig::map() const {
   TsdfConfig config;
-  config.voxel_size_m = voxel_size_m;
+  config.voxel_size_m = map_kind == MapKind::surfels ? free_voxel_m : voxel_size_m;
   config.truncation_vox = truncation_vox;
   config.clearing_percent = clearing_percent;
   return config;
@@ -105,7 +115,9 @@ ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& 
   setup.seed = config.seed;
   setup.camera = camera;
   setup.truth = truth;
-  return ViewPlanner{config.strategy.make(setup)};
+  PlannerParts parts = config.strategy.make(setup);
+  if (config.fixed_views) parts.generator = std::make_shared<FixedViews>(config.fixed_views);
+  return ViewPlanner{std::move(parts)};
 }
 
 Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedRunConfig& config) {
@@ -148,14 +160,21 @@ Measures measure_map(const GroundTruth& truth, const TsdfSnapshot& map, const Ex
           metrics.f_score};
 }
 
+Measures measure_run(const GroundTruth& truth, const TsdfSnapshot& map, const SurfelModel* surfels,
+                     const SimulatedRunConfig& config, const Executor& executor) {
+  if (surfels == nullptr) return measure_map(truth, map, executor);
+  return measure_surfels(truth, map, surfels->surfels(), UnknownSurfelConfig{}.min_weight, config.voxel_size_m,
+                         executor);
+}
+
 Status TruthMeter::scanned(ScanRecord& scan, const TsdfSnapshot& map) {
-  scan.measures = measure_map(truth_, map, executor_);
+  scan.measures = measure_run(truth_, map, surfels_, config_, executor_);
   before_ = map;
   return {};
 }
 
 Status TruthMeter::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> /*frames*/) {
-  view.measures = measure_map(truth_, map, executor_);
+  view.measures = measure_run(truth_, map, surfels_, config_, executor_);
   view.reveals_object = newly_known(truth_, before_, map, executor_).reveals_object();
   view.looks_at_object = looks_at_object(truth_, view.T_world_camera);
   before_ = map;
@@ -177,13 +196,33 @@ Result<RunRecord> run_simulated(const GroundTruth& truth, const SimulatedRunConf
 Result<RunRecord> run_recorded(const GroundTruth& truth, const SimulatedRunConfig& config, Recorder& recorder,
                                const Executor& executor, const Progress& progress) {
   SACCADE_CHECK(config.validate());
-  ViewPlanner planner = make_planner(config, config.camera, regions_of(truth.scene().scene(), config.strategy), &truth);
-  return run_recorded(truth, config, planner, recorder, executor, progress);
+  std::shared_ptr<SurfelModel> surfels;
+  SimulatedRunConfig planned = config;
+  if (config.map_kind == MapKind::surfels) {
+    SACCADE_TRY(SurfelModel model, SurfelModel::create());
+    surfels = std::make_shared<SurfelModel>(std::move(model));
+    planned.strategy = surfel_planner(surfels);
+  }
+  ViewPlanner planner =
+      make_planner(planned, config.camera, regions_of(truth.scene().scene(), planned.strategy), &truth);
+  return run_with(truth, config, planner, surfels.get(), recorder, executor, progress);
 }
 
 Result<RunRecord> run_recorded(const GroundTruth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
                                Recorder& recorder, const Executor& executor, const Progress& progress) {
   SACCADE_CHECK(config.validate());
+  if (config.map_kind == MapKind::surfels) {
+    return Error{Errc::invalid_argument, "a planner of one's own chooses views on a volume, not on surfels",
+                 "exploration"};
+  }
+  return run_with(truth, config, planner, nullptr, recorder, executor, progress);
+}
+
+namespace {
+
+Result<RunRecord> run_with(const GroundTruth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
+                           SurfelModel* surfels, Recorder& recorder, const Executor& executor,
+                           const Progress& progress) {
   const Scene& scene = truth.scene().scene();
   TsdfConfig map_config = config.map();
   map_config.workspace = scene.workspace;
@@ -192,13 +231,14 @@ Result<RunRecord> run_recorded(const GroundTruth& truth, const SimulatedRunConfi
   SACCADE_TRY(std::unique_ptr<Robot> robot, carrier(truth.scene(), config));
   SACCADE_TRY(MaskedCamera camera,
               MaskedCamera::create(std::move(sensor), std::move(robot), config.arm.get(), executor));
-  TruthMeter meter{truth, executor};
+  TruthMeter meter{truth, config, surfels, executor};
   Recorders recorders{&meter, &recorder};
-  Explorer explorer{{map, camera, camera.robot(), executor, &recorders, nullptr, {}, &progress}, config.exploration};
+  Explorer explorer{{map, camera, camera.robot(), executor, &recorders, nullptr, {}, &progress, {}, surfels},
+                    config.exploration};
   RunRecord run;
   SACCADE_TRY(run.scan, explorer.scan(scene.scan));
   if (!run.scan.complete) {
-    run.scan.measures = measure_map(truth, map.content(), executor);
+    run.scan.measures = measure_run(truth, map.content(), surfels, config, executor);
     run.stopped_because = StopReason::cancelled;
     return run;
   }
@@ -206,5 +246,7 @@ Result<RunRecord> run_recorded(const GroundTruth& truth, const SimulatedRunConfi
   measure_flights(run, scene.scan);
   return run;
 }
+
+}  // namespace
 
 }  // namespace saccade

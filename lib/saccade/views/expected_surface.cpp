@@ -10,58 +10,20 @@
 #include <span>
 
 #include "saccade/views/internal/completed_objects.hpp"
+#include "saccade/views/internal/exposure.hpp"
 #include "saccade/views/internal/find_supports.hpp"
 #include "saccade/views/internal/find_walls.hpp"
 #include "saccade/views/internal/state_volume.hpp"
+#include "saccade/views/surface_device.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr float kLeastCosine{0.17364818F};  // the cosine of 80°
 
-/// Area of a voxel's exposed faces across its normal, which points to their open side.
-struct Exposed {
-  std::uint32_t voxel{0};
-  Eigen::Vector3f normal;
-  float area_vox{0.0F};  ///< faces
-};
-
-/// Returns the exposed part of an unknown voxel where is_free(neighbour's index) holds; `strides` as in a volume.
-template <class IsFree>
-std::optional<Exposed> exposed_at(const StateVolume& volume, std::size_t voxel, const IsFree& is_free) {
-  const std::ptrdiff_t row = volume.row();
-  const std::ptrdiff_t layer = volume.layer();
-  const auto at = [&](std::ptrdiff_t offset) {
-    return is_free(static_cast<std::size_t>(static_cast<std::ptrdiff_t>(voxel) + offset));
-  };
-  const std::array<std::ptrdiff_t, 3> stride{1, row, layer};
-  Eigen::Vector3f faces{Eigen::Vector3f::Zero()};
-  Eigen::Vector3f count{Eigen::Vector3f::Zero()};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<Eigen::Index>(axis);
-    const bool above = at(stride[axis]);
-    const bool below = at(-stride[axis]);
-    count[i] = static_cast<float>(above) + static_cast<float>(below);
-    faces[i] = static_cast<float>(above) - static_cast<float>(below);
-  }
-  if (count.sum() == 0.0F) return std::nullopt;
-  Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
-  for (int z = -1; z <= 1; ++z) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int x = -1; x <= 1; ++x) {
-        if (at(z * layer + y * row + x))
-          normal += Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
-      }
-    }
-  }
-  if (normal.squaredNorm() < 1e-6F) normal = faces;
-  if (normal.squaredNorm() < 1e-6F) return std::nullopt;  // a sheet between empty voxels has no direction
-  normal.normalize();
-  return Exposed{static_cast<std::uint32_t>(voxel), normal, std::max(faces.cwiseAbs().dot(normal.cwiseAbs()), 0.5F)};
-}
-
 /// Merges exposed voxels that lie in one block with an edge of `block` voxels and face the same octant.
-std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const Exposed> exposed, std::int32_t block) {
+std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const ExposedVoxel> exposed,
+                                  std::int32_t block) {
   struct Keyed {
     std::uint64_t key;
     std::uint32_t index;
@@ -71,7 +33,7 @@ std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const Exp
   for (std::size_t i = 0; i < exposed.size(); ++i) {
     const Index3 at = volume.voxel(exposed[i].voxel) - volume.box().lo;
     const auto& n = exposed[i].normal;
-    const unsigned octant = (n.x() < 0.0F ? 1U : 0U) | (n.y() < 0.0F ? 2U : 0U) | (n.z() < 0.0F ? 4U : 0U);
+    const unsigned octant = (n[0] < 0.0F ? 1U : 0U) | (n[1] < 0.0F ? 2U : 0U) | (n[2] < 0.0F ? 4U : 0U);
     const auto part = [&](std::int32_t v) { return static_cast<std::uint64_t>(v / block); };
     order[i] = {
         ((part(at.z) * static_cast<std::uint64_t>(blocks.y) + part(at.y)) * static_cast<std::uint64_t>(blocks.x) +
@@ -89,12 +51,12 @@ std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const Exp
     Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
     Eigen::Vector3f mean{Eigen::Vector3f::Zero()};
     float area{0.0F};
-    const auto center = [&](const Exposed& e) -> Eigen::Vector3f {
+    const auto center = [&](const ExposedVoxel& e) -> Eigen::Vector3f {
       return voxel_center(volume.voxel(e.voxel), volume.voxel_size_m()).cast<float>();
     };
     for (end = first; end < order.size() && order[end].key == order[first].key; ++end) {
-      const Exposed& e = exposed[order[end].index];
-      normal += e.area_vox * e.normal;
+      const ExposedVoxel& e = exposed[order[end].index];
+      normal += e.area_vox * Eigen::Vector3f{e.normal[0], e.normal[1], e.normal[2]};
       mean += e.area_vox * center(e);
       area += e.area_vox;
     }
@@ -117,12 +79,14 @@ std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const Exp
 double seen_area_cm2(const StateVolume& volume, std::span<const std::uint32_t> seen, const Executor& executor) {
   constexpr std::size_t kChunk{4096};
   const IndexBox inner = volume.box().grown(-1);
+  const StateBox states = volume.state_box();
+  const auto is_empty = [&](std::int64_t other) { return states.states[other] == StateBox::kEmpty; };
   std::vector<double> areas_vox(seen.size() / kChunk + 1);
   executor.parallel_for(seen.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!inner.contains(volume.voxel(seen[i]))) continue;
-      const auto e = exposed_at(volume, seen[i], [&](std::size_t other) { return volume[other] == VoxelState::empty; });
-      if (e) areas_vox[begin / kChunk] += static_cast<double>(e->area_vox);
+      ExposedVoxel e;
+      if (expose_faces(states, seen[i], is_empty, e)) areas_vox[begin / kChunk] += static_cast<double>(e.area_vox);
     }
   });
   const double area_vox = std::accumulate(areas_vox.begin(), areas_vox.end(), 0.0);
@@ -140,19 +104,17 @@ Box bounds_m(const IndexBox& voxels, double voxel_m) {
   return {corner_m(voxels.lo), corner_m(voxels.hi)};
 }
 
-/// Calls add(index, x) for the exposed unknown voxels of a row, except its ends: those in an object beside anything
-/// open, those outside beside empty voxels. `marks` is working memory of equal length.
-template <class Add>
-void for_exposed(const StateVolume& volume, const VoxelRole* all_roles, std::size_t row,
-                 std::vector<std::uint8_t>& marks, const Add& add) {
+/// Adds the exposed voxels of a row, except its ends. `marks` is working memory of equal length.
+void add_exposed(const StateVolume& volume, const ExposureTask& task, std::size_t row, std::vector<std::uint8_t>& marks,
+                 std::vector<ExposedVoxel>& exposed) {
   const std::ptrdiff_t to_y = volume.row();
   const std::ptrdiff_t to_z = volume.layer();
   const auto width = static_cast<std::size_t>(volume.row());
   const VoxelState* states = volume.data() + row;
-  const VoxelRole* roles = all_roles + row;
+  const VoxelRole* roles = task.roles + row;
   marks.assign(width, 0);
   unsigned any{0};
-  for (std::size_t x = 1; x + 1 < width; ++x) {
+  for (std::size_t x = 1; x + 1 < width; ++x) {  // is_exposed, many voxels at a time
     const VoxelRole* at = roles + x;
     const unsigned beside = at[1].bits | at[-1].bits | at[to_y].bits | at[-to_y].bits | at[to_z].bits | at[-to_z].bits;
     const unsigned of_outside = at->reach() == VoxelRole::outside ? +VoxelRole::empty : +VoxelRole::closed;
@@ -163,8 +125,45 @@ void for_exposed(const StateVolume& volume, const VoxelRole* all_roles, std::siz
   }
   if (any == 0) return;
   for (std::size_t x = 1; x + 1 < width; ++x) {
-    if (marks[x] != 0) add(row + x, static_cast<std::int32_t>(x));
+    ExposedVoxel e;
+    if (marks[x] != 0 && expose(task, static_cast<std::int64_t>(row + x), e)) exposed.push_back(e);
   }
+}
+
+/// Returns the exposed voxels of some layers, by increasing index. Layers and rows at the border lack neighbours, so no
+/// surface is expected there.
+std::vector<ExposedVoxel> exposed_in_layers(const StateVolume& volume, const ExposureTask& task, std::int32_t begin,
+                                            std::int32_t end) {
+  std::vector<ExposedVoxel> exposed;
+  std::vector<std::uint8_t> marks;
+  const Index3 size = volume.box().size();
+  for (std::int32_t z = std::max(begin, 1); z < std::min(end, size.z - 1); ++z) {
+    for (std::int32_t y = 1; y + 1 < size.y; ++y) {
+      add_exposed(volume, task, static_cast<std::size_t>(z * volume.layer() + y * volume.row()), marks, exposed);
+    }
+  }
+  return exposed;
+}
+
+/// Returns those of some layers from all, which are in order.
+std::vector<ExposedVoxel> those_in_layers(const StateVolume& volume, std::span<const ExposedVoxel> all,
+                                          std::int32_t begin, std::int32_t end) {
+  const auto before = [&](std::int32_t z) {
+    const std::ptrdiff_t first = z * volume.layer();
+    return std::partition_point(all.begin(), all.end(), [&](const ExposedVoxel& e) { return e.voxel < first; });
+  };
+  return {before(begin), before(end)};
+}
+
+/// Returns the share of its area for which surface beside an object counts, by squared distance; −1 beyond reach.
+std::vector<float> beside_shares(const DistanceToObjects& distance, const ExpectedSurfaceConfig& config) {
+  std::vector<float> shares;
+  for (const float d : distance.metres()) {
+    shares.push_back(d > static_cast<float>(config.reach_m)
+                         ? -1.0F
+                         : static_cast<float>(config.beside_share) * std::exp(-d / static_cast<float>(config.decay_m)));
+  }
+  return shares;
 }
 
 /// Finds the highest support below each point.
@@ -184,26 +183,13 @@ void find_supports_below(const StateVolume& volume, std::span<const std::vector<
   }
 }
 
-/// Tells whether an empty voxel lies in a cavity: in each direction along x and y within its object's hull, the empty
-/// space ends, and on at least two sides at seen surface.
-bool is_in_cavity(const StateVolume& volume, const VoxelRole* roles, std::size_t voxel) {
-  int seen{0};
-  for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}, volume.row(), -volume.row()}) {
-    std::size_t at = voxel;
-    while (at < volume.size() && roles[at].is_empty_inside()) at += static_cast<std::size_t>(step);
-    if (at >= volume.size() || volume[at] == VoxelState::empty) return false;
-    seen += volume[at] == VoxelState::occupied ? 1 : 0;
+/// Reads the volume on a device where that works, else on the CPU.
+Result<StateVolume> read_volume(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor,
+                                SurfaceDevice* device) {
+  if (device != nullptr && device->follow(map, executor).ok()) {
+    if (Result<StateVolume> volume = StateVolume::read(map, box, *device); volume.ok()) return volume;
   }
-  return seen >= 2;
-}
-
-/// Tells whether an unknown voxel closes a cavity towards known empty space.
-bool closes_cavity(const StateVolume& volume, const VoxelRole* roles, std::size_t voxel) {
-  const std::array<std::ptrdiff_t, 6> steps{volume.layer(), 1, -1, volume.row(), -volume.row(), -volume.layer()};
-  const auto open = std::find_if(steps.begin(), steps.end(), [&](std::ptrdiff_t step) {
-    return roles[voxel + static_cast<std::size_t>(step)].is_empty_inside();
-  });
-  return open != steps.end() && is_in_cavity(volume, roles, voxel + static_cast<std::size_t>(*open));
+  return StateVolume::read(map, box, executor);
 }
 
 bool is_behind(std::span<const Wall> walls, const Eigen::Vector3d& p_m) {
@@ -258,12 +244,12 @@ std::int32_t ExpectedSurface::object_near(const Eigen::Vector3d& p_m, double wit
 }
 
 Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,
-                                         const Executor& executor) {
+                                         const Executor& executor, SurfaceDevice* device) {
   SACCADE_CHECK(config.validate());
   const double voxel_m = map.config.voxel_size_m;
   const IndexBox box =
       map.config.workspace ? voxels_with_center_in(*map.config.workspace, voxel_m) : map.grid.known_bounds();
-  SACCADE_TRY(StateVolume read, StateVolume::read(map, box, executor));
+  SACCADE_TRY(StateVolume read, read_volume(map, box, executor, device));
   ExpectedSurface result;
   result.config = config;
   result.volume = std::make_shared<const StateVolume>(std::move(read));
@@ -278,41 +264,31 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   if (objects.objects.empty()) return result;
   for (const CompletedObject& object : objects.objects) result.objects.push_back(bounds_m(object.seen, voxel_m));
   const DistanceToObjects distance{volume, objects.seen, config.reach_m, executor};
-  const VoxelRole* roles = objects.roles.data();
-
-  // Layers and rows at the border lack neighbours, so no surface is expected there.
-  const Index3 size = box.size();
+  const std::vector<float> shares = beside_shares(distance, config);
+  const ExposureTask task{volume.state_box(),
+                          objects.roles.data(),
+                          distance.squared().data(),
+                          static_cast<std::int64_t>(distance.row()),
+                          static_cast<std::int64_t>(distance.layer()),
+                          shares.data(),
+                          static_cast<float>(config.completed_share),
+                          static_cast<float>(config.behind_opening)};
+  std::optional<std::vector<ExposedVoxel>> all;
+  if (volume.ticket() != 0) {
+    if (auto exposed = device->exposed(volume.ticket(), task); exposed.ok()) all = std::move(exposed).value();
+  }
   const std::int32_t block = std::max(1, static_cast<std::int32_t>(std::lround(config.spacing_m / voxel_m)));
-  std::vector<Points> slabs(static_cast<std::size_t>((size.z - 1) / block + 1));
+  std::vector<Points> slabs(static_cast<std::size_t>((box.size().z - 1) / block + 1));
   executor.parallel_for(slabs.size(), 1, [&](std::size_t slab, std::size_t) {
-    std::vector<Exposed> completed;
-    std::vector<Exposed> beside;
-    std::vector<std::uint8_t> marks;
     const std::int32_t first = static_cast<std::int32_t>(slab) * block;
-    for (std::int32_t z = std::max(first, 1); z < std::min(first + block, size.z - 1); ++z) {
-      for (std::int32_t y = 1; y + 1 < size.y; ++y) {
-        const auto row = static_cast<std::size_t>(z * volume.layer() + y * volume.row());
-        for_exposed(volume, roles, row, marks, [&](std::size_t i, std::int32_t x) {
-          if (is_behind(result.walls, voxel_center(volume.voxel(i), voxel_m))) return;
-          if (roles[i].reach() == VoxelRole::inside) {
-            auto e =
-                exposed_at(volume, i, [&](std::size_t other) { return roles[other].opening() != VoxelRole::closed; });
-            if (!e) return;
-            e->area_vox *= static_cast<float>(config.completed_share);
-            if (closes_cavity(volume, roles, i)) e->area_vox *= static_cast<float>(config.behind_opening);
-            completed.push_back(*e);
-            return;
-          }
-          const float d = distance.at_m(x, y, z);
-          if (d > static_cast<float>(config.reach_m)) return;
-          auto e = exposed_at(volume, i, [&](std::size_t other) { return roles[other].opening() == VoxelRole::empty; });
-          if (!e) return;
-          e->area_vox *= static_cast<float>(config.beside_share) * std::exp(-d / static_cast<float>(config.decay_m));
-          beside.push_back(*e);
-        });
-      }
-    }
-    slabs[slab] = {merged(volume, completed, block), merged(volume, beside, block)};
+    std::vector<ExposedVoxel> exposed = all ? those_in_layers(volume, *all, first, first + block)
+                                            : exposed_in_layers(volume, task, first, first + block);
+    std::erase_if(exposed, [&](const ExposedVoxel& e) {
+      return is_behind(result.walls, voxel_center(volume.voxel(e.voxel), voxel_m));
+    });
+    const auto beside =
+        std::stable_partition(exposed.begin(), exposed.end(), [](const ExposedVoxel& e) { return e.completed != 0; });
+    slabs[slab] = {merged(volume, {exposed.begin(), beside}, block), merged(volume, {beside, exposed.end()}, block)};
   });
   for (const Points& slab : slabs)
     result.points.insert(result.points.end(), slab.completed.begin(), slab.completed.end());
@@ -330,7 +306,7 @@ Result<std::shared_ptr<const ExpectedSurface>> expected_surface(const PlanningCo
                                                                 const ExpectedSurfaceConfig& config) {
   if (context.expected != nullptr && *context.expected && (*context.expected)->config == config)
     return *context.expected;
-  SACCADE_TRY(ExpectedSurface made, expected_surface(context.map, config, context.executor));
+  SACCADE_TRY(ExpectedSurface made, expected_surface(context.map, config, context.executor, context.device));
   auto surface = std::make_shared<const ExpectedSurface>(std::move(made));
   if (context.expected != nullptr) *context.expected = surface;
   return surface;

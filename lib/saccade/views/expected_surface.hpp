@@ -15,6 +15,7 @@
 namespace saccade {
 
 class StateVolume;
+class SurfaceDevice;
 
 struct ExpectedSurfaceConfig {
   /// Objects are completed down to their supports: level surfaces that were seen over at least this area.
@@ -79,8 +80,9 @@ struct ExpectedSurface {
 /// cavities. Second, unknown space next to empty space near the seen surface of an object counts with less weight.
 /// @return an empty surface for a map without objects; invalid_argument for a bad config or too large a workspace.
 /// O(voxels of the workspace). The thread count never changes a bit.
+/// @param device reads the voxels' states and finds the exposed ones; nullptr, or an error of the device: the CPU does.
 [[nodiscard]] Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,
-                                                       const Executor& executor);
+                                                       const Executor& executor, SurfaceDevice* device = nullptr);
 
 /// Returns the expected surface of a context's map. Parts of one choice with equal configurations share it.
 [[nodiscard]] Result<std::shared_ptr<const ExpectedSurface>> expected_surface(const PlanningContext& context,

@@ -43,7 +43,7 @@ struct Sighted {
 
 /// Bounds each pose by the surface that faces its camera, and traces lines of sight from the centres close to the best.
 Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_camera, std::size_t count, bool one_roll,
-                const Executor& executor) {
+                const Executor& executor, SurfaceDevice* device) {
   std::vector<RankedView> views;
   for (const Pose& pose : T_world_camera) views.push_back({pose});
   const std::vector<std::size_t> starts = starts_of_centers(T_world_camera);
@@ -58,12 +58,13 @@ Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_c
   std::stable_sort(centers.begin(), centers.end(), [](const Center& a, const Center& b) { return a.most > b.most; });
   Sighted result;
   const auto look = [&](std::size_t from, std::size_t to) {
+    std::vector<std::span<const Pose>> places;
+    for (std::size_t i = from; i < to; ++i)
+      places.push_back(T_world_camera.subspan(centers[i].begin, centers[i].end - centers[i].begin));
+    const auto sights = prospect.visible(places, executor, device);
     executor.parallel_for(to - from, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = from + begin; i < from + end; ++i) {
-        centers[i].most = fill_in(
-            prospect, prospect.visible(T_world_camera.subspan(centers[i].begin, centers[i].end - centers[i].begin)),
-            centers[i], views);
-      }
+      for (std::size_t i = begin; i < end; ++i)
+        centers[from + i].most = fill_in(prospect, sights[i], centers[from + i], views);
     });
   };
   const FirmBest best = firm_best(
@@ -129,17 +130,24 @@ Status SurfaceGainConfig::validate() const {
   return surface.validate();
 }
 
-SurfaceGain::SurfaceGain(const SurfaceGainConfig& config)
-    : config_{config}, widened_{widened_vertically(config_.sensor, config_.tilt_rad)} {
+SurfaceGain::SurfaceGain(const SurfaceGainConfig& config, MakeSight sight)
+    : config_{config}, widened_{widened_vertically(config_.sensor, config_.tilt_rad)}, sight_{std::move(sight)} {
   SACCADE_EXPECTS(config_.validate().ok());
+}
+
+Result<std::shared_ptr<const LinesOfSight>> SurfaceGain::sight_to(std::shared_ptr<const ExpectedSurface> surface,
+                                                                  const Executor& executor) const {
+  if (sight_) return sight_(std::move(surface), executor);
+  return voxel_sight(std::move(surface));
 }
 
 Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                   std::span<const Pose> T_world_camera) {
   SACCADE_CHECK(check_finite(T_world_camera, "surface gain"));
   SACCADE_TRY(auto surface, expected_surface(context, config_.surface));
+  SACCADE_TRY(auto sight, sight_to(surface, context.executor));
   SACCADE_TRY(const SurfaceProspect prospect,
-              SurfaceProspect::create(context, region, std::move(surface), widened_, 0.0));
+              SurfaceProspect::create(context, region, std::move(surface), std::move(sight), widened_, 0.0));
   std::vector<double> gains(T_world_camera.size());
   context.executor.parallel_for(gains.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) gains[i] = prospect.promise(T_world_camera[i]).worth();
@@ -161,8 +169,9 @@ Result<RankedViews> SurfaceGain::ranked(const PlanningContext& context, const Re
                                         std::span<const Pose> T_world_camera, std::size_t count,
                                         double doubtful_share) const {
   SACCADE_TRY(auto surface, expected_surface(context, config_.surface));
+  SACCADE_TRY(auto sight, sight_to(surface, context.executor));
   SACCADE_TRY(SurfaceProspect made,
-              SurfaceProspect::create(context, region, std::move(surface), widened_, doubtful_share));
+              SurfaceProspect::create(context, region, std::move(surface), std::move(sight), widened_, doubtful_share));
   const auto prospect = std::make_shared<const SurfaceProspect>(std::move(made));
   std::vector<Pose> others;
   std::vector<RankedView> attempted;
@@ -173,7 +182,8 @@ Result<RankedViews> SurfaceGain::ranked(const PlanningContext& context, const Re
       others.push_back(pose);
     }
   }
-  Sighted best = sighted(*prospect, others, count, config_.one_roll, context.executor);
+  SurfaceDevice* const device = sight_ ? nullptr : context.device;  // it looks along voxels
+  Sighted best = sighted(*prospect, others, count, config_.one_roll, context.executor, device);
   without_body(*prospect, best, count, context.executor);
   RankedViews ranked;
   ranked.complete = best.views.size() == others.size();

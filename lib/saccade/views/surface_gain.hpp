@@ -4,6 +4,7 @@
 
 #include "saccade/views/expected_surface.hpp"
 #include "saccade/views/gain.hpp"
+#include "saccade/views/lines_of_sight.hpp"
 
 namespace saccade {
 
@@ -26,14 +27,15 @@ struct SurfaceGainConfig {
 };
 
 /// Gain in cm² of expected surface. It counts surface in the region that lies in the camera's field of view and range,
-/// that ExpectedSurface::is_visible from the camera, and that the robot's own body does not hide. Surface that an
+/// that is in the camera's line of sight (MakeSight), and that the robot's own body does not hide. Surface that an
 /// earlier view promised but failed to show counts less from a similar direction: by the share of its promise that the
 /// earlier view kept. best() also counts surface behind unknown space (doubtful_share) where no view is worth taking
 /// otherwise, where a view kept less than a quarter of its promise, or the last one less than half.
 class SurfaceGain final : public Gain {
  public:
   /// Expects a valid configuration.
-  explicit SurfaceGain(const SurfaceGainConfig& config);
+  /// @param sight what hides surface; empty: the voxels of the map (voxel_sight)
+  explicit SurfaceGain(const SurfaceGainConfig& config, MakeSight sight = {});
   /// @return invalid_argument for a pose that is not finite, with its index; errors of expected_surface.
   /// O(voxels of the workspace + camera centres · points · voxels between).
   [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
@@ -49,8 +51,12 @@ class SurfaceGain final : public Gain {
                                            std::span<const Pose> T_world_camera, std::size_t count,
                                            double doubtful_share) const;
 
+  [[nodiscard]] Result<std::shared_ptr<const LinesOfSight>> sight_to(std::shared_ptr<const ExpectedSurface> surface,
+                                                                     const Executor& executor) const;
+
   SurfaceGainConfig config_;
   PinholeCamera widened_;
+  MakeSight sight_;
 };
 
 }  // namespace saccade

@@ -7,52 +7,11 @@
 #include "saccade/cuda/internal/gpu_fusion.hpp"
 #include "saccade/cuda/internal/gpu_gain.hpp"
 #include "saccade/cuda/internal/gpu_raycast.hpp"
+#include "support/lost_compute.hpp"
 #include "support/random_run.hpp"
 
 namespace saccade::internal::cuda {
 namespace {
-
-/// Emulated device that is lost after some operations.
-class LostCompute final : public Compute {
- public:
-  explicit LostCompute(int operations) : left_{operations} {}
-
-  [[nodiscard]] Result<void*> allocate(std::size_t bytes) override {
-    SACCADE_CHECK(spend());
-    return device_.allocate(bytes);
-  }
-  void release(void* memory) noexcept override { device_.release(memory); }
-  [[nodiscard]] Status copy_in(void* to, const void* from, std::size_t bytes) override {
-    SACCADE_CHECK(spend());
-    return device_.copy_in(to, from, bytes);
-  }
-  [[nodiscard]] Status copy_out(void* to, const void* from, std::size_t bytes) override {
-    SACCADE_CHECK(spend());
-    return device_.copy_out(to, from, bytes);
-  }
-  [[nodiscard]] Status copy_within(void* to, const void* from, std::size_t bytes) override {
-    SACCADE_CHECK(spend());
-    return device_.copy_within(to, from, bytes);
-  }
-  [[nodiscard]] Status fill(void* memory, std::uint8_t value, std::size_t bytes) override {
-    SACCADE_CHECK(spend());
-    return device_.fill(memory, value, bytes);
-  }
-  [[nodiscard]] Status launch(const KernelEntry& kernel, std::size_t blocks, const void* arguments) override {
-    SACCADE_CHECK(spend());
-    return device_.launch(kernel, blocks, arguments);
-  }
-  [[nodiscard]] Status finish() override { return spend(); }
-
- private:
-  [[nodiscard]] Status spend() {
-    if (left_ == 0) return Error{Errc::unavailable, "the device is lost", "cuda"};
-    --left_;
-    return {};
-  }
-  HostCompute device_{Executor{}};
-  int left_;
-};
 
 TEST(LostDevice, EveryCallSaysSo) {
   test::RandomRun run{4};
@@ -67,7 +26,7 @@ TEST(LostDevice, EveryCallSaysSo) {
   int ended{0};
   for (int operations = 0; operations < 200 && ended == 0; ++operations) {
     SCOPED_TRACE(operations);
-    LostCompute device{operations};
+    test::LostCompute device{operations};
     BrickStore bricks{device};
     GpuFusion fusion{device};
     GpuGain gain{device};

@@ -125,7 +125,7 @@ TEST(Cell, WhatIsWrongIsToldWithItsPlace) {
   expect_refused("camera: {command: c, timeout: 0}", "positive");
   expect_refused("joints: {command: j}", "joints need an arm that plans");
   expect_refused("arm: {urdf: a.urdf}\nrobot: {command: r}", "exclude each other");
-  expect_refused("tracking: gps", "forced, hint or icp");
+  expect_refused("tracking: gps", "forced, hint, icp or rgbd");
   expect_refused("free: [{min: [0, 0, 0], max: [0, 1, 1]}]", "the box is empty");
   expect_refused("free: [{min: [0, 0, -1e20], max: [1, 1, 1]}]", "a box reaches to -1e+20 m");
   expect_refused("fixtures: [{min: [0, 0, 0], max: [1, 1001, 1]}]", "within 1000 m");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <random>
 
 #include "saccade/segment/internal/boundary_matching.hpp"
 #include "saccade/segment/internal/least_assignment.hpp"
@@ -117,6 +118,35 @@ TEST(LeastAssignment, IsTheBestOfAllPermutations) {
     compared += 1;
   }
   EXPECT_EQ(compared, 300U);
+}
+
+/// Martin's BCE: the mean over the points of the larger of |R₁ ∖ R₂| / |R₁| and |R₂ ∖ R₁| / |R₂|, with R the segments
+/// that a point is in.
+TEST(ConsistencyError, IsThatOfTheDefinition) {
+  std::mt19937_64 random{5};
+  for (int i = 0; i < 40; ++i) {
+    std::vector<std::uint32_t> a(60);
+    std::vector<std::uint32_t> b(60);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      a[k] = static_cast<std::uint32_t>(random() % 6);
+      b[k] = random() % 3 == 0 ? static_cast<std::uint32_t>(random() % 9) : a[k];
+    }
+    double sum{0.0};
+    for (std::size_t p = 0; p < a.size(); ++p) {
+      double in_a{0.0};
+      double in_b{0.0};
+      double only_a{0.0};
+      double only_b{0.0};
+      for (std::size_t q = 0; q < a.size(); ++q) {
+        in_a += a[q] == a[p] ? 1.0 : 0.0;
+        in_b += b[q] == b[p] ? 1.0 : 0.0;
+        only_a += a[q] == a[p] && b[q] != b[p] ? 1.0 : 0.0;
+        only_b += b[q] == b[p] && a[q] != a[p] ? 1.0 : 0.0;
+      }
+      sum += std::max(only_a / in_a, only_b / in_b);
+    }
+    ASSERT_NEAR(consistency_error(a, b).value().bidirectional, sum / 60.0, 1e-12) << i;
+  }
 }
 
 TEST(ConsistencyError, IsCountedByHand) {

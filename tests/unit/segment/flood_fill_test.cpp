@@ -70,6 +70,20 @@ TEST(FloodFill, WhatIsNotKnownDoesNotSeparate) {
   EXPECT_EQ(labels_of(cloud, {1.0, 0.5, 0.0}), (Labels{0, 1, 2}));  // nothing is less than 0
 }
 
+/// N₁ · N₂ of a normal that is zero is 0.
+TEST(FloodFill, AsPrintedWhatIsNotKnownCountsAsZero) {
+  PointCloud cloud = row({0.0F, 1.0F, 2.0F}, 1.0F);
+  cloud.normals[1] = {kNowhere, 0.0F, 0.0F};
+  cloud.normals[2] = Eigen::Vector3f::Zero();
+  FloodFillConfig printed = FloodFillConfig::as_printed();
+  EXPECT_EQ(labels_of(cloud, printed), (Labels{0, 1, 2}));
+  printed.threshold = 0.51;  // 0.5 · (1 − 0)
+  EXPECT_EQ(labels_of(cloud, printed), (Labels{0, 0, 0}));
+  printed.threshold = 0.05;
+  cloud.normals.clear();
+  EXPECT_EQ(labels_of(cloud, printed), (Labels{0, 0, 0})) << "a cloud without normals is filled by colours";
+}
+
 TEST(FloodFill, PointsThatAreNoneHaveNoLabel) {
   PointCloud cloud = row({0.0F, kNowhere, 0.5F, 9.0F}, 0.5F);
   cloud.radii_m[1] = kNowhere;

@@ -7,6 +7,8 @@
 #include <iostream>
 #include <limits>
 #include <random>
+#include <span>
+#include <vector>
 
 namespace saccade {
 namespace {
@@ -42,6 +44,33 @@ TEST(Distortion, MatchesTheFormulaByHand) {
   const double r2 = 0.41;
   EXPECT_NEAR(p.x(), 0.5 * (1 + 0.1 * r2) + 2 * 0.01 * 0.5 * -0.4 + 0.02 * (r2 + 2 * 0.25), 1e-15);
   EXPECT_NEAR(p.y(), -0.4 * (1 + 0.1 * r2) + 0.01 * (r2 + 2 * 0.16) + 2 * 0.02 * 0.5 * -0.4, 1e-15);
+}
+
+TEST(Distortion, RationalLensIsInvertedToo) {
+  // The depth camera of an Azure Kinect, to three digits.
+  const Distortion lens{3.13, 2.32, 8.13e-5, -5.12e-5, 0.130, 3.46, 3.35, 0.663};
+  const double r2 = 0.41;
+  const double radial = (1 + r2 * (3.13 + r2 * (2.32 + r2 * 0.130))) / (1 + r2 * (3.46 + r2 * (3.35 + r2 * 0.663)));
+  const Vector2d p = lens.distort({0.5, -0.4});
+  EXPECT_NEAR(p.x(), 0.5 * radial + 2 * 8.13e-5 * 0.5 * -0.4 - 5.12e-5 * (r2 + 2 * 0.25), 1e-15);
+  EXPECT_GT(lens.regular_radius(), 1.2);
+  for (double x = -1.2; x < 1.2; x += 0.05) {
+    const Vector2d ideal{x, 0.3 * x - 0.1};
+    const auto back = lens.undistort(lens.distort(ideal));
+    ASSERT_TRUE(back) << ideal.transpose();
+    EXPECT_LT((*back - ideal).norm(), 1e-9) << ideal.transpose();
+  }
+  const Distortion pole{.k4 = -1.0};  // grows without bound towards r = 1
+  EXPECT_TRUE(pole.regular_at({0.9, 0.0}));
+  EXPECT_FALSE(pole.regular_at({1.1, 0.0}));
+  EXPECT_LT(pole.regular_radius(), 1.0);
+}
+
+TEST(Distortion, CoefficientsBeyondTheEighthAreNoLens) {
+  const std::vector<double> twelve{1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0};
+  EXPECT_EQ(Distortion::from_coefficients(twelve), (Distortion{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(Distortion::from_coefficients(std::span{twelve}.first(4)), (Distortion{1, 2, 3, 4}));
+  EXPECT_FALSE(Distortion::from_coefficients(std::vector<double>{0, 0, 0, 0, 0, 0, 0, 0, 1e-3}));
 }
 
 TEST(Distortion, FoldedPartOfTheModelIsNotUsed) {

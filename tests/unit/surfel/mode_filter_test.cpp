@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <numeric>
@@ -12,6 +13,7 @@
 
 #include "saccade/core/simd.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
+#include "support/naive_mode_filter.hpp"
 
 namespace saccade {
 namespace {
@@ -158,6 +160,75 @@ TEST(ModeFilter, OfEqualWeightsTheFirstWins) {
   const Filtered result = run(frames, {}, 1);
   ASSERT_EQ(result.filter.modes(7).size(), 2U);
   for (const SurfelMode& winner : result.filter.winners({})) ASSERT_GT(winner.color.x(), 0.7F);
+}
+
+/// Random frames of a wall with noise of depth that the guided filter moves far, and of colours around three tones, so
+/// far apart that no colour is as near to one as to another.
+std::vector<Frame> far_frames(std::mt19937_64& random, int count) {
+  std::vector<Frame> frames(static_cast<std::size_t>(count));
+  for (Frame& frame : frames) {
+    frame.depth = DepthImage{kModeCamera.width, kModeCamera.height, 0.8F};
+    frame.color = ColorImage{kModeCamera.width, kModeCamera.height};
+    for (std::size_t k = 0; k < frame.depth.size(); ++k) {
+      frame.depth.data()[k] += 0.036F * (static_cast<float>(random() % 1000) / 1000.0F);
+      const auto tone = static_cast<std::uint8_t>(60 + random() % 3 * 12 + random() % 5);
+      frame.color->data()[k] = {tone, tone, 90};
+    }
+    frame.T_world_camera = Pose::Identity();
+  }
+  return frames;
+}
+
+/// Algorithm 6 and eq. 4.11 to the letter; and each departure from it gives other winners.
+TEST(ModeFilter, WinnersAsPrintedAreThoseOfTheEquation) {
+  std::mt19937_64 random{23};
+  const std::vector<Frame> frames = far_frames(random, 9);
+  const auto winners_of = [&](const ModeFilterConfig& config, test::NaiveModes* naive) {
+    SurfelFusion fusion = SurfelFusion::create().value();
+    ModeFilter filter = ModeFilter::create(config).value();
+    for (const Frame& frame : frames) {
+      EXPECT_TRUE(fusion.add_frame(frame, kModeCamera, {}));
+      EXPECT_TRUE(filter.add_frame(frame, fusion.association(), {}));
+      if (naive != nullptr) test::naive_mode_filter(*naive, frame, fusion.association(), config);
+    }
+    return filter.winners({});
+  };
+  test::NaiveModes naive;
+  const std::vector<SurfelMode> printed = winners_of(ModeFilterConfig::as_printed(), &naive);
+  ASSERT_EQ(printed.size(), naive.size());
+  ASSERT_GT(printed.size(), 700U);
+  std::size_t several{0};
+  for (SurfelId id = 0; id < printed.size(); ++id) {
+    const auto heaviest =
+        std::max_element(naive[id].begin(), naive[id].end(), [](const auto& a, const auto& b) { return a.w < b.w; });
+    several += naive[id].size() > 1 ? 1U : 0U;
+    ASSERT_LE((printed[id].color.cast<double>() - heaviest->c / 255.0).norm(), 2e-6) << id;
+    ASSERT_LE((printed[id].position_m.cast<double>() - heaviest->p).norm(), 2e-5)
+        << id;  // moves of centimetres; guidance in floats
+    ASSERT_EQ(printed[id].weight, heaviest->w) << id;
+  }
+  EXPECT_GT(several, 300U);
+
+  const ModeFilterConfig ours;
+  ModeFilterConfig densest = ModeFilterConfig::as_printed();
+  densest.choice_sigmas = ours.choice_sigmas;
+  ModeFilterConfig sharpened = densest;
+  sharpened.sharpening.strength = ours.sharpening.strength;
+  ModeFilterConfig limited = ModeFilterConfig::as_printed();
+  limited.max_depth_change_m = ours.max_depth_change_m;
+  ModeFilterConfig unguided = ModeFilterConfig::as_printed();
+  unguided.enhance_depth = false;
+  const auto differ = [](const std::vector<SurfelMode>& a, const std::vector<SurfelMode>& b) {
+    std::size_t count{0};
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      count += a[i].color != b[i].color || a[i].position_m != b[i].position_m ? 1U : 0U;
+    }
+    return count;
+  };
+  EXPECT_GT(differ(printed, winners_of(densest, nullptr)), 300U) << "decision 18";
+  EXPECT_GT(differ(winners_of(densest, nullptr), winners_of(sharpened, nullptr)), 10U) << "decision 19";
+  EXPECT_GT(differ(printed, winners_of(limited, nullptr)), 100U) << "decision 18, depths";
+  EXPECT_GT(differ(printed, winners_of(unguided, nullptr)), 300U) << "decision 20";
 }
 
 TEST(ModeFilter, WithoutColourDoesNothingAndSaysSo) {

@@ -9,6 +9,7 @@ export type ActionObject = Record<string, unknown> & { do: string };
 /** done: false: there was nothing to undo or redo. */
 export interface ActionResult {
   done: boolean;
+  carried?: number; // points that took the labels of another cloud
 }
 
 interface Waiting {
@@ -89,7 +90,8 @@ export class ActionQueue {
       if (this.waiting[0] !== first) return; // dropped
       if (typeof head["client_actions"] === "number") this.clientActions = head["client_actions"];
       this.finish(head);
-      first.resolve({ done: head["done"] !== false });
+      const carried = typeof head["carried"] === "number" ? { carried: head["carried"] } : {};
+      first.resolve({ done: head["done"] !== false, ...carried });
     } catch (error) {
       if (this.waiting[0] !== first) return;
       if (error instanceof Disconnected) {

@@ -5,25 +5,29 @@ import { BusySign } from "../ui/busy";
 import { fill, h } from "../ui/dom";
 import { drawer } from "../ui/fold_menu";
 import { ProgressCard } from "../ui/progress";
-import { isBoolean, isNumber, oneOf, recall, remember } from "../ui/settings";
+import { isBoolean, isNumber, isText, oneOf, recall, remember } from "../ui/settings";
 import { Shortcuts } from "../ui/shortcuts";
 import { ThemeSwitch } from "../ui/theme";
 import type { Viewer } from "../view/types";
 import { createViewer } from "../view/viewer";
 import "./annotate.css";
 import { makeBar } from "./bar";
+import { BoxShow } from "./box_show";
 import { Coloring } from "./coloring";
 import { controlSection } from "./control_list";
 import { Edits } from "./edits";
 import { Files } from "./files";
+import { fourViews } from "./four_views";
 import { Guidance } from "./guidance";
 import { isFlightKey, shortcutsOf } from "./keys";
 import { labelSection } from "./label_section";
 import { Pointer } from "./pointer";
+import { Segments } from "./segments";
 import { Session } from "./session";
 import { firstNote, hiddenNote, showSection, viewBar } from "./show_section";
 import "./stage.css";
 import { type CloudEntry, type State, Store } from "./store";
+import { clipSection } from "./clip_section";
 import { actionSection, kMaxBelow_mm, kMaxBrush, toolSection } from "./tool_section";
 
 export function startAnnotate(connection: Connection, hello: Hello, app: HTMLElement): void {
@@ -38,11 +42,15 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
   viewer.element.setAttribute("role", "application");
   viewer.element.setAttribute("aria-label", "Cloud");
   const busy = new BusySign();
+  connection.name = store.state.name;
+  store.watch(["name"], ({ name }) => remember("name", name));
   const session = new Session(connection, store, viewer, busy);
   const edits = new Edits(store, session, viewer);
-  const pointer = new Pointer(viewer, store, edits);
+  const segments = new Segments(store, session, viewer);
+  const pointer = new Pointer(viewer, store, edits, segments);
   const files = new Files(store, session);
-  const coloring = new Coloring(store, session, viewer);
+  const coloring = new Coloring(store, session, viewer, segments);
+  new BoxShow(store, session, viewer);
   const guidance = new Guidance(store, session, viewer);
   const shortcuts = new Shortcuts();
   const theme = new ThemeSwitch((dark) => viewer.setTheme(dark));
@@ -58,9 +66,11 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
     toolSection(store),
     labelSection(store, edits),
     showSection(store, coloring.element),
+    clipSection(store),
     controlSection(store, edits, viewer),
     guidance.section(),
   );
+  viewer.element.append(fourViews(store, viewer));
   stage.append(
     pointer.overlay.element,
     pointer.overlay.hint,
@@ -75,6 +85,7 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
 
   followView(store, viewer);
   session.onChange(() => pointer.renew());
+  viewer.cloud.onHoverReady(() => pointer.renew());
   keepSettings(store);
   window.addEventListener("beforeunload", (event) => {
     if (store.state.pending > 0) event.preventDefault();
@@ -87,12 +98,20 @@ function firstState(hello: Hello): State {
     connection: "connected",
     readOnly: null,
     clouds: (hello["clouds"] as CloudEntry[] | undefined) ?? [],
+    sequence: hello["sequence"] === true,
     cloud: null,
     failure: null,
     progress: null,
     ready: false,
     pending: 0,
     people: 1,
+    others: [],
+    name: recall("name", "", isText),
+    lastBy: "",
+    savedAt: "",
+    clip: null,
+    boxes: false,
+    four: false,
     canUndo: false,
     canRedo: false,
     labels: new Map(),
@@ -138,6 +157,7 @@ function keepSettings(store: Store): void {
 /** The view shows what the state says. */
 function followView(store: Store, viewer: Viewer): void {
   store.watch(["show"], ({ show }) => viewer.cloud.show(show));
+  store.watch(["clip"], ({ clip }) => viewer.cloud.setClip(clip));
   store.watch(["pointSize"], ({ pointSize }) => void (viewer.cloud.pointSize = pointSize));
   let hidden: ReadonlySet<number> = new Set();
   store.watch(["hidden"], (state) => {

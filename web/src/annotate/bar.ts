@@ -38,6 +38,7 @@ export function makeBar({ store, edits, files, shortcuts, theme, foldPanel }: Pa
   const moreMenu = menuButton(more, "More", () => [
     { text: "New annotation …", icon: "create", choose: () => void files.beginAnew() },
     { text: "Clear all labels", icon: "clear", choose: () => void edits.clear() },
+    { text: "Your name …", icon: "people", choose: () => files.askName() },
   ]);
   const writing = [undo, redo, save, exportButton, more];
   store.watch(["canUndo", "canRedo", "cloud", "readOnly", "pending"], (state) => {
@@ -53,7 +54,7 @@ export function makeBar({ store, edits, files, shortcuts, theme, foldPanel }: Pa
     iconButton("panel", "Panel (\\)", foldPanel),
     cloudPart(store, files),
     h("div", { class: "bar-group" }, undo, redo),
-    h("div", { class: "bar-group push" }, people(store), status(store)),
+    h("div", { class: "bar-group push" }, people(store), savedAt(store), status(store)),
     foldMenu(
       h(
         "div",
@@ -86,8 +87,13 @@ function cloudPart(store: Store, files: Files): HTMLElement {
   previous.setAttribute("aria-label", "Previous cloud");
   next.setAttribute("aria-label", "Next cloud");
   const place = h("span", { class: "soft number wide-only" });
-  const steps = h("div", { class: "bar-group" }, previous, place, next);
-  store.watch(["cloud", "clouds"], ({ cloud, clouds }) => {
+  const carry = textButton("Carry", () => void files.carry(), {
+    icon: "carry",
+    title: "Goes to the next cloud, where points without a label take those of this one (Shift+N)",
+  });
+  carry.setAttribute("aria-label", "Carry the labels to the next cloud");
+  const steps = h("div", { class: "bar-group" }, previous, place, next, carry);
+  store.watch(["cloud", "clouds", "sequence"], ({ cloud, clouds, sequence }) => {
     name.textContent = cloud?.name ?? "";
     open.setAttribute("aria-label", `Open. ${cloud ? `Now: ${cloud.name}` : "No cloud"}`);
     steps.hidden = clouds.length < 2;
@@ -95,6 +101,8 @@ function cloudPart(store: Store, files: Files): HTMLElement {
     place.textContent = `${index + 1} / ${clouds.length}`;
     previous.disabled = index <= 0;
     next.disabled = index >= clouds.length - 1;
+    carry.hidden = !sequence;
+    carry.disabled = cloud === null || next.disabled;
     if (cloud) document.title = `${cloud.name} · Saccade`;
   });
   return h("div", { class: "bar-group cloud-part" }, open, steps);
@@ -103,12 +111,20 @@ function cloudPart(store: Store, files: Files): HTMLElement {
 function people(store: Store): HTMLElement {
   const count = h("span", { class: "number" });
   const element = h("span", { class: "people", role: "status" }, icon("people"), count);
-  store.watch(["people"], (state) => {
+  store.watch(["people", "others", "lastBy"], (state) => {
     element.hidden = state.people < 2;
-    count.textContent = String(state.people);
-    element.title = `${state.people} pages have this cloud open`;
+    count.textContent = String(state.people) + (state.lastBy ? ` · ${state.lastBy}` : "");
+    const names = state.others.length > 0 ? `: you, ${state.others.join(", ")}` : "";
+    element.title = `${state.people} pages have this cloud open${names}`;
     element.setAttribute("aria-label", element.title);
   });
+  return element;
+}
+
+/** When the last action of this page came to the disk. */
+function savedAt(store: Store): HTMLElement {
+  const element = h("span", { class: "soft number wide-only", "data-testid": "saved-at" });
+  store.watch(["savedAt"], (state) => void (element.textContent = state.savedAt ? `saved at ${state.savedAt}` : ""));
   return element;
 }
 

@@ -4,10 +4,11 @@ import { fill, h, on } from "../ui/dom";
 import { rampLegend } from "../ui/ramp_legend";
 import type { Painter, Viewer } from "../view/types";
 import { heightsOf, normalColors, rampColors, type Scale, scaleOf } from "../view/ramp";
+import { type Segments, segmentColors } from "./segments";
 import type { Session } from "./session";
 import type { OpenCloud, Store } from "./store";
 
-/** "own", "height", "normal", or kField and the name of a field. */
+/** "own", "height", "segments", "normal", or kField and the name of a field. */
 export type ColorBy = string;
 
 const kField = "field ";
@@ -29,6 +30,7 @@ export class Coloring {
     private readonly store: Store,
     private readonly session: Session,
     private readonly viewer: Viewer,
+    private readonly segments: Segments,
   ) {
     on(this.select, { change: () => this.store.set({ colorBy: this.select.value }) });
     store.watch(["shading"], ({ shading }) => viewer.setShading(shading));
@@ -51,8 +53,15 @@ export class Coloring {
     this.select.value = colorBy;
     const turn = ++this.turn;
     fill(this.legend);
+    if (cloud.tiles !== undefined) return this.applyToTiles(cloud, colorBy);
     if (colorBy === "own") return this.viewer.cloud.setPainter(null);
     if (colorBy === "height") return this.viewer.cloud.setPainter(this.byHeight(cloud.up));
+    if (colorBy === "segments") {
+      const there = await this.segments.bring();
+      if (turn !== this.turn) return;
+      if (!there) return this.store.set({ colorBy: "own" });
+      return this.viewer.cloud.setPainter((_, first, count) => this.segments.colors(first, count));
+    }
     const values = await this.bring(colorBy, cloud.shown, turn);
     if (values === null || turn !== this.turn) return;
     if (colorBy === "normal") {
@@ -63,6 +72,33 @@ export class Coloring {
     const scale = scaleOf(values);
     this.say(scale, colorBy.slice(kField.length), "");
     this.viewer.cloud.setPainter((_, first, count) => rampColors(values.subarray(first, first + count), scale));
+  }
+
+  /** Values come with the tiles; the coarsest says where the scale ends. */
+  private async applyToTiles(cloud: OpenCloud, colorBy: ColorBy): Promise<void> {
+    const { viewer, session } = this;
+    if (colorBy === "segments") {
+      viewer.cloud.setPainter((_positions, _first, count, values) =>
+        values === undefined ? null : segmentColors(count, (i) => values[2 * i]!, (i) => values[2 * i + 1] === 1),
+      );
+      return session.tiles.colorBy("segments");
+    }
+    const field = colorBy === "normal" || colorBy.startsWith(kField);
+    if (colorBy === "height") viewer.cloud.setPainter(this.byHeight(cloud.up));
+    else viewer.cloud.setPainter(null);
+    if (!field) return session.tiles.colorBy(null);
+    const name = colorBy === "normal" ? colorBy : colorBy.slice(kField.length);
+    let scale: Scale | null = null;
+    viewer.cloud.setPainter((_positions, _first, _count, values) => {
+      if (values === undefined) return null;
+      if (colorBy === "normal") return normalColors(values);
+      if (scale === null) {
+        scale = scaleOf(values);
+        this.say(scale, name, "");
+      }
+      return rampColors(values, scale);
+    });
+    return session.tiles.colorBy({ name, width: colorBy === "normal" ? 3 : 1 });
   }
 
   /** The first points are an even sample: they say where the scale ends. */
@@ -100,6 +136,7 @@ function choicesOf(cloud: OpenCloud): [ColorBy, string][] {
     ["own", cloud.has_colors ? "Own colours" : "One colour"],
     ["height", "Height"],
   ];
+  if (cloud.has_segments) choices.push(["segments", "Segments"]);
   if (cloud.has_normals) choices.push(["normal", "Normal"]);
   for (const name of cloud.fields ?? []) choices.push([kField + name, name.replaceAll("_", " ")]);
   return choices;

@@ -3,7 +3,7 @@
 import { toast } from "../ui/toast";
 import type { Pick, Viewer } from "../view/types";
 import type { Session } from "./session";
-import { type State, type Store, rowOf } from "./store";
+import { type Clip, type State, type Store, rowOf } from "./store";
 
 /** Shape of an area as an action names it: rectangle, lasso, polyline or brush. */
 export type Shape = Record<string, unknown>;
@@ -25,8 +25,9 @@ export class Edits {
   ) {}
 
   click(pick: Pick): void {
-    const { action } = this.store.state;
-    if (action === "set") this.set(pick.point);
+    const { action, tool, label } = this.store.state;
+    if (tool === "segment" && (action === "set" || action === "remove")) this.segment(pick.point, action === "set" ? label : 0);
+    else if (action === "set") this.set(pick.point);
     else if (action === "remove") void this.removeAt(pick);
     else if (action === "pick") this.pickLabel(pick);
   }
@@ -34,6 +35,11 @@ export class Edits {
   set(point: number): void {
     const { label, startCost } = this.store.state;
     void this.session.act({ do: "set", label, points: [point], ...(startCost > 0 ? { start_cost: startCost } : {}) });
+  }
+
+  /** Takes the whole segment of a point into a label; 0: its paint comes off. */
+  segment(point: number, label: number): void {
+    void this.session.act({ do: "paint", label, points: [point], segments: true });
   }
 
   move(from: number, to: number): void {
@@ -69,14 +75,34 @@ export class Edits {
     }
   }
 
+  /** The smaller part, or the larger, of the label under the stroke gets the current one. */
+  async split(line: readonly (readonly [number, number])[], larger: boolean): Promise<void> {
+    const { label, cloud } = this.store.state;
+    if (!cloud) return;
+    const split = { line, part: larger ? "larger" : "smaller" };
+    await this.session.act({ do: "paint", label, split, view: this.view() }, this.unseen());
+  }
+
+  /** The picture in which an action selects. */
+  private view(): Record<string, unknown> {
+    const { clip_world: clip, ...view } = this.viewer.picture();
+    const box = this.store.state.clip;
+    const planes = box && { clip_planes: planesOf(box) };
+    return { ...view, clip_world: [0, 4, 8, 12].map((i) => clip.slice(i, i + 4)), ...planes };
+  }
+
+  /** Labels that the page does not show: their points are neither selected nor in the way. */
+  private unseen(): Record<string, unknown> {
+    const { hidden } = this.store.state;
+    return hidden.size > 0 ? { hidden: [...hidden] } : {};
+  }
+
   /** Set paints what is in the area; Del takes away control points or paint. */
   async area(shape: Shape): Promise<void> {
     const state = this.store.state;
     if (!state.cloud) return;
-    const { clip_world: clip, ...view } = this.viewer.picture();
-    const rows = [0, 4, 8, 12].map((i) => clip.slice(i, i + 4));
-    const selection = { ...shape, ...depthOf(state, shape), view: { ...view, clip_world: rows } };
-    const hidden = state.hidden.size > 0 ? { hidden: [...state.hidden] } : {};
+    const selection = { ...shape, ...depthOf(state, shape), view: this.view() };
+    const hidden = this.unseen();
     if (state.action === "set") {
       await this.session.act({ do: "paint", label: state.label, ...selection }, hidden);
     } else if (state.action === "remove" && state.removal === "paint") {
@@ -103,6 +129,13 @@ export class Edits {
       toast("All labels are gone from the cloud.", { button: { text: "Undo", click: () => this.undo() } });
   }
 
+  /** Locks a label for everyone, or unlocks it. */
+  lock(label: number): void {
+    const row = rowOf(this.store.state, label);
+    if (!row.locked && row.points === 0) toast("There is nothing to lock: no point has this label.");
+    else void this.session.act({ do: row.locked ? "unlock" : "lock", label });
+  }
+
   /** Changes what is known of a label. One change may follow another that the program has not answered yet. */
   async define(number: number, change: Partial<Definition>): Promise<void> {
     const row = rowOf(this.store.state, number);
@@ -117,6 +150,17 @@ export class Edits {
     const control = this.store.state.controls.get(point);
     if (control) void this.session.act({ do: "set", label: control.label, points: [point], start_cost: startCost });
   }
+}
+
+/** Planes (a, b, c, d) whose inner side is the box. */
+function planesOf({ low, high }: Clip): number[][] {
+  return [0, 1, 2].flatMap((axis) => {
+    const towards = (sign: number) => [0, 1, 2].map((i) => (i === axis ? sign : 0));
+    return [
+      [...towards(1), -low[axis]!],
+      [...towards(-1), high[axis]!],
+    ];
+  });
 }
 
 function depthOf(state: Readonly<State>, shape: Shape): { below_m?: number | "any" } {

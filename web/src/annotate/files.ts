@@ -18,6 +18,8 @@ const kFormats: readonly [format: string, text: string, hint: string][] = [
   ["npy", "NumPy array", ".npy"],
   ["names.txt", "Names of labels, text", ".txt"],
   ["names.json", "Names of labels, JSON", ".json"],
+  ["boxes.json", "Boxes around labels, JSON", ".json"],
+  ["boxes.txt", "Boxes around labels, KITTI", ".txt"],
 ];
 
 export class Files {
@@ -31,6 +33,22 @@ export class Files {
     if (!answer) return;
     const files = Array.isArray(answer.head["files"]) ? answer.head["files"].map(String) : [];
     toast(files.length > 0 ? `Saved ${files.join(", ")}` : "Saved.");
+  }
+
+  /** Asks for the name that others see. */
+  askName(): void {
+    const input = h("input", { type: "text", "aria-label": "Your name", maxlength: 20, autocomplete: "off" });
+    input.value = this.store.state.name;
+    const form = h("form", { class: "fields" }, input, h("button", { type: "submit", class: "button outline" }, "Say it"));
+    const sheet = openSheet("Your name", {}, h("p", { class: "soft" }, "Others who have this cloud open see who did what last."), form);
+    on(form, {
+      submit: (event) => {
+        event.preventDefault();
+        sheet.close();
+        void this.session.rename(input.value.trim());
+      },
+    });
+    input.focus();
   }
 
   exports(): MenuItem[] {
@@ -66,6 +84,19 @@ export class Files {
     const { cloud, clouds } = this.store.state;
     const index = (cloud?.index ?? 0) + by;
     if (index >= 0 && index < clouds.length) void this.session.change(index);
+  }
+
+  /** Goes to the next cloud, where points without a label take those of this one. */
+  async carry(): Promise<void> {
+    const { cloud, clouds, sequence } = this.store.state;
+    if (!sequence || !cloud) return;
+    if (cloud.index + 1 >= clouds.length) return toast("This is the last cloud of the sequence.");
+    await this.session.change(cloud.index + 1);
+    if (this.store.state.cloud?.index !== cloud.index + 1) return;
+    const result = await this.session.act({ do: "carry" }, { from: cloud.index });
+    if (!result) return;
+    const points = result.carried === undefined ? "Points" : `${result.carried.toLocaleString("en")} points`;
+    toast(`${points} took the labels of ${cloud.name}.`, { button: { text: "Undo", click: () => void this.session.act({ do: "undo" }) } });
   }
 
   open(): void {

@@ -2,9 +2,11 @@
 // The keys of the annotation tool.
 import type { Gesture, Shortcut } from "../ui/shortcuts";
 import type { Viewer } from "../view/types";
+import { slice, toggleClip } from "./clip_section";
 import { removeSelected } from "./control_list";
 import type { Edits } from "./edits";
 import type { Files } from "./files";
+import { toggleFour } from "./four_views";
 import type { Guidance } from "./guidance";
 import { emptyLabel, toggleHidden, toggleSolo, turnPage } from "./label_section";
 import type { Pointer } from "./pointer";
@@ -64,6 +66,8 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
     tool("Y", "polyline", "Polyline"),
     tool("L", "lasso", "Lasso"),
     tool("B", "brush", "Brush"),
+    tool("S", "segment", "Segment (with --segments)"),
+    tool("K", "split", "Split with a stroke"),
     {
       keys: ["U"],
       group,
@@ -79,7 +83,7 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
   ];
 }
 
-function labelKeys({ store }: KeyParts): Shortcut[] {
+function labelKeys({ store, edits }: KeyParts): Shortcut[] {
   const group = "Labels";
   const step = (by: number) => store.set({ label: Math.max(1, Math.min(kMaxLabel, store.state.label + by)) });
   const digits = [..."1234567890"];
@@ -109,6 +113,7 @@ function labelKeys({ store }: KeyParts): Shortcut[] {
       text: "Name the label",
       run: () => document.querySelector<HTMLInputElement>(".current-label input[type=text]")?.select(),
     },
+    { keys: ["Shift+K"], group, text: "Lock or unlock the label", run: () => edits.lock(store.state.label) },
     { keys: ["H"], group, text: "Hide or show the label", run: () => toggleHidden(store, store.state.label) },
     { keys: ["Shift+H"], group, text: "Show it alone, or all", run: () => toggleSolo(store, store.state.label) },
   ];
@@ -120,7 +125,7 @@ function viewKeys({ store, viewer, guidance, foldPanel, showHelp }: KeyParts): S
   const size = (by: number) =>
     store.set({ pointSize: Math.max(kPointSizes.min, Math.min(kPointSizes.max, store.state.pointSize + by)) });
   return [
-    { keys: ["F"], group, text: "Whole cloud", run: () => viewer.camera.fit() },
+    { keys: ["F"], group, text: "Whole cloud", run: () => viewer.fit() },
     { keys: ["T"], group, text: "From the top", run: look("top") },
     { keys: ["Shift+F"], group, text: "From the front", run: look("front") },
     { keys: ["Shift+T"], group, text: "From the side", run: look("side") },
@@ -134,8 +139,14 @@ function viewKeys({ store, viewer, guidance, foldPanel, showHelp }: KeyParts): S
     { keys: ["Shift+C"], group, text: "Cloud on or off", run: () => toggleShown(store, "cloud") },
     { keys: ["Shift+L"], group, text: "Labels on or off", run: () => toggleShown(store, "labels") },
     { keys: ["Shift+P"], group, text: "Control points on or off", run: () => toggleShown(store, "controls") },
+    { keys: ["Shift+B"], group, text: "Boxes around labels on or off", run: () => store.set({ boxes: !store.state.boxes }) },
+    { keys: ["Shift+V"], group, text: "Four views or one", run: () => toggleFour(store) },
+    { keys: ["V"], group, text: "Clip box on or off", run: () => toggleClip(store) },
+    { keys: ["Alt+PageUp", "Alt+PageDown"], group, text: "Slice above, below", run: (which) => slice(store, which === 0 ? 1 : -1) },
     { keys: ["M"], group, text: "Heat map of doubt", run: () => guidance.toggle() },
     { keys: ["G"], group, text: "Next best click", run: () => void guidance.jump() },
+    { keys: ["A"], group, text: "Accept it with the label of the place, and go on", run: () => void guidance.accept(true) },
+    { keys: ["Shift+A"], group, text: "Accept it with the chosen label, and go on", run: () => void guidance.accept(false) },
     { keys: ["\\"], group, text: "Panel on or off", run: foldPanel },
     { keys: ["?"], or: ["F1"], group, text: "This sheet", run: showHelp },
   ];
@@ -159,6 +170,7 @@ function fileKeys({ store, files }: KeyParts): Shortcut[] {
       text: "Previous, next cloud",
       run: (which) => several() && files.step(sign(which)),
     },
+    { keys: ["Shift+N"], group, text: "Next cloud of a sequence, with the labels of this one", run: () => void files.carry() },
   ];
 }
 

@@ -141,6 +141,7 @@ function labelRow(store: Store, row: LabelRow): HTMLElement {
     h("span", { class: "number row-number" }, row.number > 0 ? String(row.number) : ""),
     h("span", { class: "row-name" }, row.number === 0 ? "No label" : row.name),
     h("span", { class: "number soft" }, compact(row.points)),
+    row.locked ? icon("locked") : null,
     eye,
   );
   return element;
@@ -160,6 +161,7 @@ function currentPart(store: Store, edits: Edits): HTMLElement {
     if (event.altKey) toggleSolo(store, store.state.label);
     else toggleHidden(store, store.state.label);
   });
+  const lock = iconButton("unlocked", "Lock this label (Shift+K)", () => edits.lock(store.state.label));
   const color = h("input", { type: "color", "aria-label": "Colour of the label", title: "Colour" });
   let named = store.state.label; // what is typed belongs to the label that was current when it was begun
   on(name, {
@@ -176,6 +178,10 @@ function currentPart(store: Store, edits: Edits): HTMLElement {
     number.textContent = String(row.number);
     if (document.activeElement !== name) name.value = row.name;
     color.value = row.color;
+    fill(lock, icon(row.locked ? "locked" : "unlocked"));
+    lock.setAttribute("aria-pressed", String(row.locked === true));
+    lock.setAttribute("aria-label", row.locked ? "Unlock this label" : "Lock this label");
+    lock.title = row.locked ? "Unlock this label (Shift+K)" : "Lock this label: nothing takes its points (Shift+K)";
     const hidden = state.hidden.has(row.number);
     fill(eye, icon(hidden ? "hidden" : "eye"));
     eye.setAttribute("aria-label", hidden ? "Show this label" : "Hide this label");
@@ -184,7 +190,7 @@ function currentPart(store: Store, edits: Edits): HTMLElement {
   store.watch(["label"], () => {
     if (document.activeElement === name) name.blur();
   });
-  return h("div", { class: "current-label" }, color, number, name, eye);
+  return h("div", { class: "current-label" }, color, number, name, lock, eye);
 }
 
 function detailsPart(store: Store, edits: Edits): HTMLElement {

@@ -4,8 +4,9 @@ import { h, on, takesText } from "../ui/dom";
 import type { Pick, Viewer } from "../view/types";
 import type { Edits } from "./edits";
 import { Overlay, type ScreenPoint } from "./overlay";
+import type { Segments } from "./segments";
 import { type State, type Store, rowOf } from "./store";
-import { BrushTool, LassoTool, PointTool, PolylineTool, RectangleTool, type Tools, listenForClicks } from "./tools";
+import { BrushTool, LassoTool, PointTool, PolylineTool, RectangleTool, SplitTool, type Tools, listenForClicks } from "./tools";
 
 const kTreeRest_ms = 120; // the cursor rests this long before a tree is asked for
 const kCursorStep_px = 12;
@@ -15,23 +16,25 @@ export class Pointer {
   readonly overlay = new Overlay();
   readonly readout = h("div", { class: "readout number", "aria-live": "off" });
   private readonly tools: Tools;
-  private tool: PointTool | RectangleTool | LassoTool | PolylineTool | BrushTool | null = null;
+  private tool: PointTool | RectangleTool | LassoTool | PolylineTool | BrushTool | SplitTool | null = null;
   private navigating = false; // while Space is held
   private frame = 0;
   private at: ScreenPoint | null = null;
   private cursor: ScreenPoint | null = null; // moved by the keyboard
   private treeTimer = 0;
   private treeOf: number | null = null;
+  private segment = 0; // that stands out
 
   constructor(
     private readonly viewer: Viewer,
     private readonly store: Store,
     private readonly edits: Edits,
+    private readonly segments: Segments,
   ) {
     this.tools = { viewer, overlay: this.overlay, edits, store };
     const view = viewer.element;
     listenForClicks(view, (x, y) => {
-      if (!this.navigating && store.state.tool === "point") this.click(x, y);
+      if (!this.navigating && isClicked(store.state)) this.click(x, y);
     });
     on(view, {
       pointermove: (event) => {
@@ -45,6 +48,7 @@ export class Pointer {
         this.at = null;
         this.readout.textContent = "";
         this.forgetTree();
+        this.showSegment(null);
         this.overlay.brush(null, 0);
       },
     });
@@ -83,10 +87,13 @@ export class Pointer {
     const { action, tool } = this.store.state;
     this.tool?.cancel();
     this.forgetTree();
+    this.showSegment(null);
+    if (tool === "segment") void this.segments.bring().then(() => this.renew());
     if (action === "none" || this.navigating) this.tool = null;
-    else if (tool === "point" || action === "pick") this.tool = new PointTool(this.tools, "crosshair");
+    else if (tool === "point" || tool === "segment" || action === "pick") this.tool = new PointTool(this.tools, "crosshair");
     else if (tool === "rectangle") this.tool = new RectangleTool(this.tools);
     else if (tool === "polyline") this.tool = new PolylineTool(this.tools);
+    else if (tool === "split") this.tool = action === "set" ? new SplitTool(this.tools) : null;
     else if (tool === "lasso") this.tool = new LassoTool(this.tools);
     else this.tool = new BrushTool(this.tools);
     this.viewer.setPointerTool(this.tool);
@@ -125,9 +132,19 @@ export class Pointer {
     this.readout.textContent = pick ? describe(this.store.state, pick, this.viewer) : "";
     const { action, tool, wholeTree } = this.store.state;
     const wanted = pick && action === "remove" && tool === "point" && wholeTree ? pick.point : null;
+    this.showSegment(pick);
     clearTimeout(this.treeTimer);
     if (wanted === null) this.forgetTree();
     else if (wanted !== this.treeOf) this.treeTimer = window.setTimeout(() => void this.showTree(wanted), kTreeRest_ms);
+  }
+
+  /** The segment that a click would take. */
+  private showSegment(pick: Pick | null): void {
+    const { action, tool } = this.store.state;
+    const wanted = pick !== null && tool === "segment" && action !== "none" && action !== "pick" ? this.segments.at(pick.point) : 0;
+    if (wanted === this.segment) return;
+    this.segment = wanted;
+    this.segments.highlight(wanted);
   }
 
   private async showTree(point: number): Promise<void> {
@@ -149,6 +166,7 @@ export class Pointer {
   /** After changes something else may be under the mouse. */
   renew(): void {
     this.forgetTree();
+    this.segment = 0;
     this.frame ||= requestAnimationFrame(() => this.look());
   }
 
@@ -183,6 +201,10 @@ export class Pointer {
     this.at = at;
     this.frame ||= requestAnimationFrame(() => this.look());
   }
+}
+
+function isClicked({ tool, action }: Readonly<State>): boolean {
+  return tool === "point" || tool === "segment" || action === "pick";
 }
 
 function describe(state: Readonly<State>, pick: Pick, viewer: Viewer): string {

@@ -8,7 +8,9 @@ import { toast } from "../ui/toast";
 import type { Viewer } from "../view/types";
 import { type ActionObject, ActionQueue, type ActionResult } from "./action_queue";
 import { toRgb } from "../ui/colors";
+import { isNumber, recall } from "../ui/settings";
 import { firstLook } from "../view/standpoint";
+import { TileLoader } from "./tile_loader";
 import { type OpenCloud, type Store, isEmpty } from "./store";
 
 const kFirstChunk = 65_536; // something to see soon
@@ -24,6 +26,9 @@ const kActionTexts: Record<string, string> = {
   clear: "Clearing all labels",
   undo: "Undoing",
   redo: "Redoing",
+  lock: "Locking the label",
+  unlock: "Unlocking the label",
+  carry: "Carrying the labels over",
 };
 const kQuestionTexts: Record<string, string> = {
   margins: "Finding where labels are in doubt",
@@ -31,18 +36,22 @@ const kQuestionTexts: Record<string, string> = {
   root: "Finding the control point",
   tree: "Finding what the control point labels",
   save: "Writing the labels",
+  boxes: "Laying boxes around the labels",
   field: "Bringing the numbers of the field",
 };
 const kClosed = "The program was started anew and does not let this page in any more. Open the address that it printed.";
 
 /** Points that this page holds: about 100 bytes each, on both sides of the graphics driver. */
 export function pointBudget(): number {
+  const chosen = recall("pointBudget", 0, isNumber);
+  if (chosen > 0) return chosen;
   const memory_gb = (navigator as Navigator & { deviceMemory?: number }).deviceMemory ?? 8;
   return memory_gb >= 8 ? 4_000_000 : memory_gb >= 4 ? 2_000_000 : 1_000_000;
 }
 
 export class Session {
   readonly queue: ActionQueue;
+  readonly tiles: TileLoader;
   private flashTimer = 0;
   private opening = 0; // counts up: an older one gives up
   private wanted = 0; // the cloud that is open, or will be
@@ -59,8 +68,10 @@ export class Session {
   ) {
     this.queue = new ActionQueue(connection, (pending, answer) => {
       store.set({ pending });
+      if (answer) store.set({ savedAt: new Date().toTimeString().slice(0, 8) });
       if (answer) this.takeUndo(answer);
     });
+    this.tiles = new TileLoader(connection, viewer, (error) => toast(textOf(error), { kind: "error" }));
     connection.on("changes", (message) => this.takeChanges(message));
     connection.on("ready", (message) => this.takeReady(message));
     connection.on("progress", ({ head }) => {
@@ -70,7 +81,11 @@ export class Session {
       const seen = this.complete;
       store.set({ progress: { stage: String(head["stage"]), done: number("done"), total: number("total"), seen } });
     });
-    connection.on("people", ({ head }) => store.set({ people: Number(head["count"]) || 1 }));
+    connection.on("people", ({ head }) => {
+      const people = (head["people"] ?? []) as { client: number; name: string }[];
+      const others = people.filter(({ client }) => client !== connection.client);
+      store.set({ people: Number(head["count"]) || 1, others: others.map(({ name }) => name || "without a name") });
+    });
     connection.on("read_only", ({ head }) => store.set({ readOnly: String(head["why"]) }));
     connection.on("reset", () => {
       toast("This annotation was begun anew.");
@@ -140,7 +155,7 @@ export class Session {
     if (index !== this.store.state.cloud?.index) this.complete = false;
     if (!this.complete)
       this.store.set({ failure: null, progress: { stage: `Opening ${name}`, done: 0, total: 0, seen: false } });
-    await this.load(mine, () => this.connection.ask({ type: "open", cloud: index, budget: pointBudget() }));
+    await this.load(mine, () => this.connection.ask({ type: "open", cloud: index, budget: pointBudget(), tiles: true }));
   }
 
   /** An empty annotation of the same cloud; the earlier one stays beside it. */
@@ -164,7 +179,9 @@ export class Session {
       const kept = this.takeOpen(answer);
       if (this.store.state.ready) this.queue.opened(Number(answer.head["client_actions"]) || 0);
       this.bringing = !kept;
-      if (!kept) await this.bringPoints(mine, this.store.state.cloud!.shown);
+      const cloud = this.store.state.cloud!;
+      if (cloud.tiles !== undefined) await this.bringTiles(mine);
+      else if (!kept) await this.bringPoints(mine, cloud.shown);
       if (mine !== this.opening) return;
       this.bringing = false;
       this.store.set({ progress: this.store.state.ready ? null : { stage: "graph", done: 0, total: 0, seen: true } });
@@ -190,6 +207,7 @@ export class Session {
     const same = before?.index === cloud.index && before.name === cloud.name && before.shown === cloud.shown;
     const kept =
       this.complete &&
+      cloud.tiles === undefined && // the program does not know any more which are here
       same &&
       sequence === this.sequence &&
       sameCounts(labels, state.labels) &&
@@ -204,18 +222,20 @@ export class Session {
       readOnly: typeof head["read_only"] === "string" ? head["read_only"] : null,
       clouds: state.clouds.map((entry, i) => (i === cloud.index ? { ...entry, begun: true } : entry)),
     });
-    if (!same) this.store.set({ selected: null, hidden: new Set(), startCost: 0 });
+    if (!same) this.store.set({ clip: null, lastBy: "", savedAt: "", selected: null, hidden: new Set(), startCost: 0 });
     this.takeUndo(head);
     if (!kept) {
       this.complete = false;
-      this.beginView(cloud, same);
+      this.beginView(cloud, same || (state.sequence && before !== null));
     }
     return kept;
   }
 
-  private beginView(cloud: OpenCloud, same: boolean): void {
+  /** `stay`: the camera does, in the cloud's frame. */
+  private beginView(cloud: OpenCloud, stay: boolean): void {
+    this.tiles.end();
     const view = this.viewer.cloud;
-    const pose = same ? this.viewer.camera.poseRows() : null;
+    const pose = stay ? this.viewer.camera.poseRows() : null;
     view.begin(cloud);
     view.highlight(new Uint32Array());
     view.mark(null);
@@ -255,6 +275,11 @@ export class Session {
     this.complete = true;
   }
 
+  private async bringTiles(mine: number): Promise<void> {
+    await this.tiles.begin(pointBudget());
+    if (mine === this.opening) this.complete = true;
+  }
+
   /** Takes the facts about a large cloud that were not known when it was opened. */
   private takeReady(message: Message): void {
     const { head } = message;
@@ -264,8 +289,21 @@ export class Session {
     if (this.complete) this.store.set({ progress: null });
   }
 
+  /** Says, and keeps, the person's name. */
+  async rename(name: string): Promise<void> {
+    const answer = await this.ask({ type: "name", name });
+    if (!answer) return;
+    this.connection.name = name;
+    this.store.set({ name });
+  }
+
   private takeChanges({ head, body }: Message): void {
     if (!this.store.state.cloud) return;
+    const action = head["action"] as { do: string; label?: number } | undefined;
+    if (action && head["client"] !== this.connection.client) {
+      const label = action.label ? `, label ${action.label}` : "";
+      this.store.set({ lastBy: `${String(head["name"] || "Another")}: ${action.do}${label}` });
+    }
     this.sequence = Number(head["sequence"]);
     this.takeUndo(head);
     const view = this.viewer.cloud;

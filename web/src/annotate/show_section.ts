@@ -4,6 +4,7 @@ import { checkbox, iconButton, section, segmented, slider, toggleButton } from "
 import { h, on } from "../ui/dom";
 import { icon } from "../ui/icons";
 import type { Viewer } from "../view/types";
+import { toggleFour } from "./four_views";
 import { type Side, lookFrom } from "../view/standpoint";
 import { type State, type Store, isEmpty } from "./store";
 
@@ -44,7 +45,11 @@ export function showSection(store: Store, coloring: HTMLElement): HTMLElement {
     (on) => store.set({ shading: on }),
   );
   store.watch(["shading"], (state) => shading.set(state.shading));
-  return section("Show", {}, row, coloring, size.element, shading.element);
+  const boxes = checkbox("Boxes", "An upright box around each label; the line on top points along it (Shift+B)", (on) =>
+    store.set({ boxes: on }),
+  );
+  store.watch(["boxes"], (state) => boxes.set(state.boxes));
+  return section("Show", {}, row, coloring, size.element, shading.element, boxes.element);
 }
 
 export function viewBar(store: Store, viewer: Viewer): HTMLElement {
@@ -62,6 +67,9 @@ export function viewBar(store: Store, viewer: Viewer): HTMLElement {
     navigation.set(state.navigation);
     viewer.camera.navigation = state.navigation;
   });
+  const four = toggleButton([icon("four")], "Four views", "Top, front, side and free view in one window (Shift+V)", () => toggleFour(store));
+  four.element.classList.add("icon-only");
+  store.watch(["four"], (state) => four.set(state.four));
   const legend = h(
     "span",
     { class: "heat-legend", hidden: true },
@@ -76,7 +84,9 @@ export function viewBar(store: Store, viewer: Viewer): HTMLElement {
     legend,
     navigation.element,
     h("span", { class: "divider" }),
-    iconButton("fit", "Whole cloud (F)", () => viewer.camera.fit()),
+    four.element,
+    h("span", { class: "divider" }),
+    iconButton("fit", "Whole cloud (F)", () => viewer.fit()),
     iconButton("top", "From the top (T)", look("top")),
     iconButton("front", "From the front (Shift+F)", look("front")),
     iconButton("side", "From the side (Shift+T)", look("side")),

@@ -5,10 +5,16 @@ import type { ControlPoint, LabelRow } from "../protocol";
 import type { CloudInfo, Navigation } from "../view/types";
 
 export type Action = "none" | "set" | "remove" | "pick";
-export type Tool = "point" | "rectangle" | "polyline" | "lasso" | "brush";
+export type Tool = "point" | "rectangle" | "polyline" | "lasso" | "brush" | "segment" | "split";
 export type Depth = "surface" | "below" | "deep";
 /** Items that Delete removes in an area. */
 export type Removal = "control" | "trees" | "paint";
+
+/** Box that is drawn, picked and selected in; metres, in the cloud's frame. */
+export interface Clip {
+  low: readonly [number, number, number];
+  high: readonly [number, number, number];
+}
 
 export interface CloudEntry {
   name: string;
@@ -22,6 +28,7 @@ export interface OpenCloud extends CloudInfo {
   finite: number;
   has_colors: boolean;
   has_normals?: boolean;
+  has_segments?: boolean;
   fields?: readonly string[]; // numbers of each point
   towards_viewer?: readonly [number, number, number];
   offset?: readonly [number, number, number]; // to add to every place, metres
@@ -39,12 +46,20 @@ export interface State {
   connection: ConnectionState;
   readOnly: string | null;
   clouds: readonly CloudEntry[];
+  sequence: boolean; // labels are carried from cloud to cloud
   cloud: OpenCloud | null;
   failure: string | null; // why no cloud could be opened
   progress: Progress | null;
   ready: boolean; // the graph is there
   pending: number; // actions without an answer
   people: number;
+  others: readonly string[]; // names of those who have the cloud open, too
+  name: string; // one's own
+  lastBy: string; // what another one did last
+  savedAt: string; // when the last action came to the disk; empty: none yet
+  clip: Clip | null;
+  boxes: boolean; // around labels
+  four: boolean; // views
   canUndo: boolean;
   canRedo: boolean;
   labels: ReadonlyMap<number, LabelRow>;

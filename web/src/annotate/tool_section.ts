@@ -72,16 +72,20 @@ export function toolSection(store: Store): HTMLElement {
       { value: "rectangle", text: "Rect", label: "Rectangle", title: "Drag a rectangle (R)", icon: "rectangle" },
       {
         value: "polyline",
-        text: "Polyline",
+        text: "Poly",
+        label: "Polyline",
         title: "Click the corners of an area; Enter closes it (Y)",
         icon: "polyline",
       },
       { value: "lasso", text: "Lasso", title: "Draw around an area (L)", icon: "lasso" },
       { value: "brush", text: "Brush", title: "Paint along a line (B)", icon: "brush" },
+      { value: "segment", text: "Segm.", label: "Segment", title: "Take the segment that is clicked (S); they come with --segments", icon: "segment" },
+      { value: "split", text: "Split", title: "Draw across a label: its smaller part gets the chosen one (K)", icon: "split" },
     ],
     (tool) => chooseTool(store, tool),
   );
   tools.element.classList.add("tall", "soft-choice");
+  store.watch(["cloud"], ({ cloud }) => tools.enable("segment", cloud?.has_segments === true));
   store.watch(["tool", "action"], ({ tool, action }) => tools.set(action === "pick" ? "point" : tool));
   return section("Tool", {}, tools.element, optionsPart(store));
 }
@@ -91,7 +95,7 @@ function optionsPart(store: Store): HTMLElement {
   const parts = [
     part(store, ["action", "tool"], reachPart(store), (s) => s.action === "set" && s.tool === "point"),
     part(store, ["action", "tool"], treePart(store), (s) => s.action === "remove" && s.tool === "point"),
-    part(store, ["action", "tool"], removalPart(store), (s) => s.action === "remove" && s.tool !== "point"),
+    part(store, ["action", "tool"], removalPart(store), (s) => s.action === "remove" && isArea(s)),
     part(store, ["action", "tool"], brushPart(store), (s) => isArea(s) && s.tool === "brush"),
     part(
       store,
@@ -121,7 +125,7 @@ function part(
 }
 
 function isArea(state: Readonly<State>): boolean {
-  return state.tool !== "point" && (state.action === "set" || state.action === "remove");
+  return state.tool !== "point" && state.tool !== "segment" && state.tool !== "split" && (state.action === "set" || state.action === "remove");
 }
 
 function hintOf(state: Readonly<State>): string {
@@ -130,8 +134,12 @@ function hintOf(state: Readonly<State>): string {
   if (action === "pick") return "Click a point to go on with its label.";
   if (action === "set") {
     if (tool === "point") return "Click a point; drag a sphere to move it.";
+    if (tool === "segment") return "Click a segment: all of it is painted with the label.";
+    if (tool === "split") return "Draw across what one label took: the smaller part gets the chosen label.";
     return "Points in the area are painted with the label.";
   }
+  if (tool === "segment") return "Click a segment: its paint goes.";
+  if (tool === "split") return "Split goes with Set.";
   if (tool === "point")
     return state.wholeTree ? "Click anywhere in what a sphere has labelled." : "Click the sphere of a control point.";
   return {

@@ -151,6 +151,43 @@ export class LassoTool implements PointerTool {
   }
 }
 
+/** A stroke across a label, from border to border; with Alt let go of, the larger part is taken. */
+export class SplitTool implements PointerTool {
+  readonly cursor = "crosshair";
+  private line: ScreenPoint[] = [];
+
+  constructor(private readonly tools: Tools) {}
+
+  down(x: number, y: number): boolean {
+    this.line = [[x, y]];
+    return true;
+  }
+
+  move(x: number, y: number): void {
+    const last = this.line.at(-1);
+    if (!last) return;
+    const { overlay } = this.tools;
+    if (apart(last, [x, y]) >= kStep_px && this.line.length < kMostCorners) this.line.push([x, y]);
+    overlay.line(this.line, 2);
+    overlay.say("From border to border · Alt: the larger part · Esc gives up");
+  }
+
+  up(x: number, y: number, event: PointerEvent): void {
+    const line = this.line;
+    this.cancel();
+    const last = line.at(-1);
+    if (last && apart(last, [x, y]) > 0) line.push([x, y]);
+    if (line.length < 2) return;
+    const { viewer, edits } = this.tools;
+    void edits.split(line.map(([u, v]) => viewer.toPicture(u, v)), event.altKey);
+  }
+
+  cancel(): void {
+    this.line = [];
+    this.tools.overlay.clear();
+  }
+}
+
 /** Corners by clicks; Enter, a double click or a click on the first corner ends it. */
 export class PolylineTool implements PointerTool {
   readonly cursor = "crosshair";
@@ -264,11 +301,12 @@ export class BrushTool implements PointerTool {
     if (brushUnit === "px") return brush;
     if (this.at) this.place = viewer.hover(...this.at)?.position ?? this.place;
     if (!this.place) return 6;
-    const clip = viewer.picture().clip_world;
+    const { clip_world: clip, size } = viewer.picture();
+    const height = size[1] / (viewer.toPicture(1, 0)[0] - viewer.toPicture(0, 0)[0]); // css px
     const row = (i: number) => clip.slice(4 * i, 4 * i + 4) as [number, number, number, number];
     const [a, b, c, d] = row(3);
     const depth = a * this.place[0] + b * this.place[1] + c * this.place[2] + d;
     const focal = Math.hypot(...(row(1).slice(0, 3) as [number, number, number]));
-    return Math.max(2, ((brush / 1000) * focal * viewer.element.clientHeight) / 2 / depth);
+    return Math.max(2, ((brush / 1000) * focal * height) / 2 / depth);
   }
 }

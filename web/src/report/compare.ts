@@ -5,6 +5,7 @@ import { charts, curve, type Series, stackedBars } from "./curves";
 import { type Json, list, number, numbers, object, objects, type ReportDocument, text } from "./document";
 import { facts, fold, links, type Report, section, type Section } from "./parts";
 import type { Pictures } from "./pictures";
+import { slicesSection } from "./slices";
 import { type Column, dataTable } from "./table";
 import { count, decimal, kPhases, percent, plural, signed, spaced } from "./words";
 
@@ -218,6 +219,7 @@ export function compareReport(document: ReportDocument, pictures: Pictures): Rep
   const { result } = record;
   const strategies = [...new Set(comparison.summaries.map((summary) => text(summary["strategy"])))];
   const noises = [...new Set(comparison.summaries.map((summary) => text(summary["noise"])))];
+  const slices = slicesSection(document);
   const parts = [...(comparison.scenes.length > 1 ? [""] : []), ...comparison.scenes];
   const about = objects(object(document.details)["facts"]).map((fact) => [text(fact["name"]), text(fact["value"])] as const);
   return {
@@ -231,6 +233,7 @@ export function compareReport(document: ReportDocument, pictures: Pictures): Rep
     summary: summaryText(comparison),
     sections: [
       ...parts.map((scene, i) => sceneSection(comparison, scene, i + 1)),
+      ...(slices ? [slices] : []),
       section(
         "comparison",
         "Comparison",

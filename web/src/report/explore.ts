@@ -16,11 +16,15 @@ export const millimetres = (metres: unknown): string => {
 export function runFacts(document: ReportDocument): Fact[] {
   const { record } = document;
   const result = record.result;
-  const voxel = number(result["voxel_size_m"]);
+  const map = object(result["map"]);
+  const voxel = number(map["voxel_size_m"]) ?? number(result["voxel_size_m"]);
+  const memory = number(map["memory_bytes"]);
   const least = number(result["min_gain"]);
   return [
     ["seed", record.seed === undefined ? "" : String(record.seed)],
-    ["voxel size", voxel === undefined ? "" : `${+(1000 * voxel).toFixed(2)} mm`],
+    ["surfels", map["kind"] === "surfels" ? count(number(map["surfels"])) : ""],
+    [map["kind"] === "surfels" ? "voxels of free space" : "voxel size", voxel === undefined ? "" : `${+(1000 * voxel).toFixed(2)} mm`],
+    ["memory of the map", memory === undefined ? "" : `${decimal(memory / 2 ** 20, 1)} MiB`],
     ["camera", cameraText(object(result["camera"]))],
     ["gain threshold", least === undefined ? "" : `${gain(least)} ${gainUnit(result)}`],
     ["threads", record.threads === undefined ? "" : String(record.threads)],
@@ -67,9 +71,10 @@ export function exploreReport(document: ReportDocument, pictures: Pictures): Rep
   const context: ViewsContext = { pictures, folder: "", prefix: "", unit: gainUnit(result), before: initial };
   const robot = text(result["robot"]);
   const hasArm = result["q"] !== null && views.some((view) => Array.isArray(view.json["q"]));
+  if (object(result["map"])["kind"] === "surfels") pictures.unknown = "unknown surfels in orange";
   const scan = pictures.ofView(0);
   const last = views.length > 0 ? pictures.ofView(views.length).filter((picture) => picture.kind === "map") : [];
-  const beforeAfter = [...scan, ...last.map((picture) => ({ ...picture, title: "The map at the end, unknown in grey" }))];
+  const beforeAfter = [...scan, ...last.map((picture) => ({ ...picture, title: `The map at the end, ${pictures.unknown}` }))];
   const dry = result["dry_run"] === true;
   return {
     title: `${dry ? "Dry run of" : "Exploration of"} ${text(result["scene"])}`,
@@ -101,6 +106,8 @@ export function exploreReport(document: ReportDocument, pictures: Pictures): Rep
 
 export const kRunFiles: readonly Fact[] = [
   ["mesh.ply", "the surface, with colours"],
+  ["surfels.ply", "the surface as surfels, with colours"],
+  ["unknown.ply", "unknown surfels, between empty and unknown space"],
   ["map.sacmap", "the map of occupied, empty and unknown voxels, for saccade nbv"],
   ["before.sacmap", "the map before the task"],
   ["hand.csv", "the hand's trajectory, for saccade attend"],

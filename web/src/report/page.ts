@@ -2,6 +2,7 @@
 // The page of a report: head, navigation, sections; drawn anew when a run that goes on has another view.
 import { fill, h } from "../ui/dom";
 import { ThemeSwitch } from "../ui/theme";
+import { benchmarkReport } from "./benchmark";
 import { compareReport } from "./compare";
 import { forgetCurves } from "./curves";
 import { Files, kSchema, type ReportDocument } from "./document";
@@ -15,6 +16,7 @@ import { updateReport } from "./update";
 const kReports: Record<string, (document: ReportDocument, pictures: Pictures) => Report> = {
   explore: exploreReport,
   update: updateReport,
+  benchmark: benchmarkReport,
   compare: compareReport,
   reproduce: tablesReport,
 };

@@ -17,13 +17,14 @@ const kKinds: Record<string, [title: string, alt: string]> = {
   saliency: ["What drew the attention: the surface by its saliency, with the contours of the chosen segment", "The surface from outside, brighter where it is more salient"],
   choice: ["The chosen view among its candidates", "The candidates around the region and the chosen view"],
   seen: ["What the camera saw: colour and depth", "Colour picture beside the depth picture"],
-  map: ["The map after the view, unknown in grey", "The map from outside, unknown in grey"],
+  map: ["The map after the view", "The map from outside"],
 };
 
 export class Pictures {
   private all: Picture[] = [];
 
-  constructor(readonly files: Files) {}
+  /** @param unknown how pictures of the map show what is unknown */
+  constructor(readonly files: Files, public unknown = "unknown in grey") {}
 
   /** The pictures of a view that are there. 0 is the initial scan. */
   ofView(view: number, folder = ""): Picture[] {
@@ -31,8 +32,9 @@ export class Pictures {
     return Object.entries(kKinds).flatMap(([kind, [title, alt]]) => {
       const name = `${folder}view-${String(view).padStart(2, "0")}-${kind}.png`;
       if (!this.files.has(name)) return [];
-      const shown = kind === "map" && view === 0 ? "The map after the scan, unknown in grey" : title;
-      return [{ name, title: shown, alt: `${alt}, ${place}`, kind }];
+      const shown = kind === "map" && view === 0 ? "The map after the scan" : title;
+      const unknown = kind === "map" ? `, ${this.unknown}` : "";
+      return [{ name, title: shown + unknown, alt: `${alt}${unknown}, ${place}`, kind }];
     });
   }
 

@@ -25,6 +25,10 @@ export function isNumber(value: unknown): value is number {
   return typeof value === "number" && Number.isFinite(value);
 }
 
+export function isText(value: unknown): value is string {
+  return typeof value === "string";
+}
+
 export function isBoolean(value: unknown): value is boolean {
   return typeof value === "boolean";
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the picture is seen from: a pose with 6 degrees of freedom in the scene's coordinates (the world's less `origin`).
 import * as THREE from "three";
+import type { Eye, SideCamera } from "./side_camera";
 import type { Camera, Navigation } from "./types";
 
 const kFov_rad = (50 * Math.PI) / 180;
 const kRoom = 1.08; // around the scene
 const kMove_ms = 260;
 
-export class SceneCamera implements Camera {
+export class SceneCamera implements Camera, Eye {
   navigation: Navigation = "orbit";
   readonly camera = new THREE.PerspectiveCamera((kFov_rad * 180) / Math.PI, 1, 0.01, 100);
   readonly origin = new THREE.Vector3();
@@ -18,6 +19,7 @@ export class SceneCamera implements Camera {
   /** There may be things outside of `box`. */
   loose = false;
   private flight = 0;
+  private sides: readonly SideCamera[] = [];
 
   constructor(private changed: () => void) {}
 
@@ -28,6 +30,12 @@ export class SceneCamera implements Camera {
     this.box.max.set(x1, y1, z1).sub(this.origin);
     this.up.fromArray([...up]).normalize();
     if (this.up.lengthSq() === 0) this.up.set(0, 0, 1);
+    for (const side of this.sides) side.fit();
+  }
+
+  /** Views that begin with the whole scene, and go to the same places. */
+  follow(sides: readonly SideCamera[]): void {
+    this.sides = sides;
   }
 
   /** Half of the scene's diagonal. */
@@ -66,6 +74,7 @@ export class SceneCamera implements Camera {
 
   goTo(place: readonly [number, number, number]): void {
     const target = new THREE.Vector3(...place).sub(this.origin);
+    for (const side of this.sides) side.goTo(target);
     const start = this.camera.position.clone();
     const direction = this.camera.getWorldDirection(new THREE.Vector3());
     const near = Math.min(0.25 * this.radius_m, Math.max(start.distanceTo(target), 1e-6));
@@ -142,12 +151,12 @@ export class SceneCamera implements Camera {
   }
 
   /** y where z is up; as cameras have it, z. */
-  private upFromAbove(): THREE.Vector3 {
+  upFromAbove(): THREE.Vector3 {
     const side = Math.abs(this.up.y) < 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, -Math.sign(this.up.y));
     return side.addScaledVector(this.up, -side.dot(this.up)).normalize();
   }
 
-  private corners(): THREE.Vector3[] {
+  corners(): THREE.Vector3[] {
     const { min, max } = this.box;
     return Array.from({ length: 8 }, (_, i) => new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z));
   }

@@ -2,6 +2,7 @@
 // Control points as spheres, and a ring around one point. A sphere is one vertex; its fragments are shaded as a ball's.
 import * as THREE from "three";
 import type { PointCloud } from "./points";
+import { depthRow } from "./side_camera";
 import type { ControlPlace } from "./types";
 
 const kLeast_px = 7.5; // radius on the screen, css
@@ -18,6 +19,8 @@ uniform float height;    // px of the picture
 uniform vec2 radius;     // px, least and most
 uniform float radius_m;
 uniform float size;      // px, edge of the points' squares
+uniform vec3 low;        // corners of the clip box
+uniform vec3 high;
 in vec3 position;
 in uint slot;
 flat out vec3 color;
@@ -32,7 +35,8 @@ void main() {
   // Before the ball's front: the squares around it do not hide it.
   vec4 front = projectionMatrix * vec4(seen.xy, seen.z + (radius_px + 0.5 * size) / px_per_m, 1.0);
   if (front.w > 0.0) gl_Position.z = max(front.z / front.w, -1.0) * gl_Position.w;
-  if (label.a == 0.0) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+  bool inside = all(greaterThanEqual(position, low)) && all(lessThanEqual(position, high));
+  if (label.a == 0.0 || !inside) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = 2.0 * radius_px;
   color = label.rgb;
   uint number = uint(gl_VertexID) + 1u;
@@ -80,6 +84,8 @@ export class ControlPoints {
       radius: { value: new THREE.Vector2(kLeast_px, kMost_px) },
       radius_m: { value: 0 },
       size: cloud.uniforms.size,
+      low: cloud.uniforms.low,
+      high: cloud.uniforms.high,
       rim: { value: new THREE.Color(1, 1, 1) },
     };
     const make = (defines: Record<string, string>) =>
@@ -135,6 +141,7 @@ export class ControlPoints {
   at(x: number, y: number, clip_scene: THREE.Matrix4, width: number, height: number, ratio: number) {
     if (this.stale) this.build();
     const radius_m = this.uniforms.radius_m!.value as number;
+    const [a, b, c, d] = depthRow(clip_scene);
     const px_per_clip = 0.5 * height * this.heightScale(clip_scene);
     const place = new THREE.Vector4();
     let best: { point: number; depth_m: number } | null = null;
@@ -142,13 +149,14 @@ export class ControlPoints {
     for (let i = 0; i < this.points.length; ++i) {
       const point = this.points[i]!;
       if (!this.cloud.palette.isVisible(this.cloud.palette.slotOf(this.known.get(point)?.label ?? 0))) continue;
+      if (!this.cloud.isInside(positions.getX(i), positions.getY(i), positions.getZ(i))) continue;
       place.set(positions.getX(i), positions.getY(i), positions.getZ(i), 1).applyMatrix4(clip_scene);
       if (place.w <= 0) continue;
       const px_per_m = px_per_clip / place.w;
       const radius_px = Math.min(Math.max(radius_m * px_per_m, kLeast_px * ratio), kMost_px * ratio);
       const u = 0.5 * width * (place.x / place.w + 1) - x;
       const v = 0.5 * height * (1 - place.y / place.w) - y;
-      const depth_m = place.w - (radius_px + 0.5 * this.cloud.uniforms.size.value) / px_per_m;
+      const depth_m = a * positions.getX(i) + b * positions.getY(i) + c * positions.getZ(i) + d - (radius_px + 0.5 * this.cloud.uniforms.size.value) / px_per_m;
       if (u * u + v * v <= radius_px * radius_px && (best === null || depth_m < best.depth_m)) best = { point, depth_m };
     }
     return best;

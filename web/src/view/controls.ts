@@ -5,6 +5,7 @@
 // Fly: W A S D forwards and sideways, Q E down and up, Shift faster; drag to look around; the wheel sets the speed.
 import * as THREE from "three";
 import type { SceneCamera } from "./camera";
+import type { SideCamera } from "./side_camera";
 import type { PointerTool } from "./types";
 
 type Gesture = "turn" | "pan" | "roll" | "look" | "tool";
@@ -20,6 +21,16 @@ const kFlyKeys: Record<string, readonly [number, number, number]> = {
   KeyQ: [0, -1, 0],
   KeyE: [0, 1, 0],
 };
+
+/** Which of several views the mouse moves. */
+export interface Stage {
+  /** The view there is in use from now on. */
+  enter(x: number, y: number): void;
+  /** Whether the view there is the one in use. */
+  isIn(x: number, y: number): boolean;
+  readonly side: SideCamera | null; // camera of the view in use; null: it is the free one
+  readonly area: { left: number; top: number; width: number; height: number }; // place of the view in use, css px
+}
 
 function isTyping(event: KeyboardEvent): boolean {
   const target = event.target;
@@ -43,6 +54,7 @@ export class Controls {
   constructor(
     private element: HTMLElement,
     private view: SceneCamera,
+    private stage: Stage,
     private under: (x: number, y: number) => THREE.Vector3 | null,
     private changed: () => void,
   ) {
@@ -77,10 +89,21 @@ export class Controls {
     return [event.clientX - box.left, event.clientY - box.top];
   }
 
+  /** The view under the cursor is in use, unless something is under way in another. */
+  private enter(x: number, y: number, presses: boolean): void {
+    if (this.gesture !== null || this.stage.isIn(x, y)) return;
+    if (this.tool?.drawing) {
+      if (!presses) return;
+      this.tool.cancel();
+    }
+    this.stage.enter(x, y);
+  }
+
   private down(event: PointerEvent): void {
     this.view.stop();
     this.element.focus({ preventScroll: true });
     const [x, y] = this.place(event);
+    this.enter(x, y, true);
     if (event.pointerType === "touch") {
       this.touches.set(event.pointerId, [x, y]);
       if (this.touches.size === 2) this.beginPinch();
@@ -90,19 +113,21 @@ export class Controls {
     if (event.button === 1) event.preventDefault(); // no automatic scrolling
     const camera = event.altKey || this.space;
     if (event.button === 0 && this.tool !== null && !camera && this.tool.down(x, y, event)) this.gesture = "tool";
-    else if (event.button === 1 || event.shiftKey) this.gesture = "pan";
+    else if (event.button === 1 || event.shiftKey || (this.stage.side !== null && event.button <= 2)) this.gesture = "pan";
     else if (event.ctrlKey) this.gesture = "roll";
     else if (event.button === 0 || event.button === 2) this.gesture = this.view.navigation === "fly" ? "look" : "turn";
     else return;
     this.pointer = event.pointerId;
     this.last = [x, y];
     this.element.setPointerCapture(event.pointerId);
-    if (this.gesture === "turn" || this.gesture === "pan") this.findPivot(x, y);
+    const pivots = this.gesture === "turn" || (this.gesture === "pan" && this.stage.side === null);
+    if (pivots) this.findPivot(x, y);
     if (this.gesture !== "tool") this.element.style.cursor = "grabbing";
   }
 
   private move(event: PointerEvent): void {
     const [x, y] = this.place(event);
+    if (event.buttons === 0) this.enter(x, y, false);
     if (this.touches.has(event.pointerId) && this.touches.size > 1) {
       this.pinch(event.pointerId, x, y);
       return;
@@ -152,9 +177,15 @@ export class Controls {
     if (found !== null) return pivot.copy(found);
     const ahead = camera.getWorldDirection(new THREE.Vector3());
     const depth = Math.max(pivot.clone().sub(camera.position).dot(ahead), 0.01 * this.view.radius_m);
-    const ray = new THREE.Vector3((2 * x) / this.element.clientWidth - 1, 1 - (2 * y) / this.element.clientHeight, 0.5);
+    const ray = new THREE.Vector3(...this.inView(x, y), 0.5);
     ray.unproject(camera).sub(camera.position);
     return pivot.copy(camera.position).addScaledVector(ray, depth / ray.dot(ahead));
+  }
+
+  /** −1 to 1 across the view in use, y up. */
+  private inView(x: number, y: number): [number, number] {
+    const { left, top, width, height } = this.stage.area;
+    return [(2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height];
   }
 
   private rotate(axis: THREE.Vector3, angle_rad: number, around: THREE.Vector3 | null): void {
@@ -180,16 +211,22 @@ export class Controls {
   }
 
   private rollFrom(from: readonly [number, number], to: readonly [number, number]): void {
-    const [cx, cy] = [0.5 * this.element.clientWidth, 0.5 * this.element.clientHeight];
+    const { left, top, width, height } = this.stage.area;
+    const [cx, cy] = [left + 0.5 * width, top + 0.5 * height];
     const angle = Math.atan2(to[1] - cy, to[0] - cx) - Math.atan2(from[1] - cy, from[0] - cx);
     this.rotate(this.axis(0, 0, 1), angle, null);
   }
 
   /** The pivot stays under the cursor. */
   private pan(dx: number, dy: number): void {
+    const { side, area } = this.stage;
+    if (side !== null) {
+      side.pan(dx / area.height, dy / area.height);
+      return;
+    }
     const { camera, pivot } = this.view;
     const depth = pivot.clone().sub(camera.position).dot(camera.getWorldDirection(new THREE.Vector3()));
-    const m_per_px = (2 * Math.max(depth, 1e-6) * Math.tan((camera.fov * Math.PI) / 360)) / this.element.clientHeight;
+    const m_per_px = (2 * Math.max(depth, 1e-6) * Math.tan((camera.fov * Math.PI) / 360)) / area.height;
     camera.position.addScaledVector(this.axis(1, 0, 0), -dx * m_per_px).addScaledVector(this.axis(0, 1, 0), dy * m_per_px);
   }
 
@@ -204,20 +241,28 @@ export class Controls {
     event.preventDefault();
     this.view.stop();
     const [x, y] = this.place(event);
+    this.enter(x, y, false);
+    const { side } = this.stage;
     const unit = event.deltaMode === 1 ? 32 : event.deltaMode === 2 ? 400 : 1;
     const amount = Math.min(Math.max((event.deltaY || event.deltaX) * unit, -400), 400);
-    if (this.view.navigation === "fly" && !event.ctrlKey) {
+    const factor = Math.exp((event.ctrlKey ? 0.01 : 0.0016) * amount);
+    if (side !== null && !event.shiftKey) {
+      side.zoom(...this.inView(x, y), factor);
+      this.changed();
+      return;
+    }
+    if (side === null && this.view.navigation === "fly" && !event.ctrlKey) {
       this.speed = Math.min(Math.max(this.speed * Math.exp(-0.002 * amount), 0.01), 100);
       return;
     }
     if (event.shiftKey) {
-      this.findPivot(x, y);
+      if (side === null) this.findPivot(x, y);
       this.pan(-event.deltaX * unit, -event.deltaY * unit);
     } else {
       const now = performance.now();
       const same = now - this.wheel.at < kSameWheel_ms && Math.hypot(x - this.wheel.x, y - this.wheel.y) < 4;
       this.wheel = { at: now, x, y, target: same ? this.wheel.target : this.findPivot(x, y).clone() };
-      this.zoom(this.wheel.target, Math.exp((event.ctrlKey ? 0.01 : 0.0016) * amount));
+      this.zoom(this.wheel.target, factor);
     }
     this.changed();
   }
@@ -226,7 +271,7 @@ export class Controls {
     if (this.gesture === "tool") this.tool?.cancel();
     this.end();
     const [a, b] = [...this.touches.values()] as [[number, number], [number, number]];
-    this.findPivot((a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
+    if (this.stage.side === null) this.findPivot((a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
   }
 
   private pinch(id: number, x: number, y: number): void {
@@ -237,6 +282,11 @@ export class Controls {
     const after = Math.hypot(x - other[0], y - other[1]);
     if (before < 1 || after < 1) return;
     this.pan((x - old[0]) / 2, (y - old[1]) / 2);
+    if (this.stage.side !== null) {
+      this.stage.side.zoom(...this.inView((x + other[0]) / 2, (y + other[1]) / 2), before / after);
+      this.changed();
+      return;
+    }
     this.zoom(this.view.pivot, before / after);
     const angle = Math.atan2(y - other[1], x - other[0]) - Math.atan2(old[1] - other[1], old[0] - other[0]);
     this.rotate(this.axis(0, 0, 1), angle, this.view.pivot);

@@ -12,14 +12,17 @@ precision highp float;
 uniform sampler2D colors;
 uniform highp sampler2D depths;
 uniform vec2 range;      // near and far, m
+uniform float even_m;    // of an orthographic picture: m that count as the distance; 0: perspective
+uniform vec2 corner;     // of the picture's part, px
 uniform float reach;     // px
 uniform float strength;
 out vec4 pixel;
 float closeness(float depth) {  // −log2 of the distance
+  if (even_m > 0.0) return -depth * (range.y - range.x) / even_m;
   return log2(range.y - depth * (range.y - range.x)) - log2(range.x * range.y);
 }
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
+  ivec2 at = ivec2(gl_FragCoord.xy - corner);
   ivec2 most = textureSize(depths, 0) - 1;
   float depth = texelFetch(depths, at, 0).r;
   vec3 color = texelFetch(colors, at, 0).rgb;
@@ -40,6 +43,7 @@ void main() {
 
 const kReach_px = 2;
 const kStrength = 32;
+const kEven = Math.LN2 / 0.93; // as strong as in a perspective picture that is as high at this distance
 
 export class EyeDome {
   private readonly target: THREE.WebGLRenderTarget;
@@ -63,6 +67,8 @@ export class EyeDome {
         colors: { value: this.target.texture },
         depths: { value: depthTexture },
         range: { value: new THREE.Vector2() },
+        even_m: { value: 0 },
+        corner: { value: new THREE.Vector2() },
         reach: { value: kReach_px },
         strength: { value: kStrength },
       },
@@ -84,8 +90,11 @@ export class EyeDome {
   }
 
   /** Into the picture, shaded; what is drawn then is behind what is there. */
-  compose(camera: THREE.PerspectiveCamera, ratio: number): void {
+  compose(camera: THREE.PerspectiveCamera | THREE.OrthographicCamera, ratio: number, corner: readonly [number, number]): void {
     const { uniforms } = this.material;
+    const even = camera instanceof THREE.OrthographicCamera;
+    uniforms["even_m"]!.value = even ? kEven * (camera.top - camera.bottom) : 0;
+    (uniforms["corner"]!.value as THREE.Vector2).set(...corner);
     (uniforms["range"]!.value as THREE.Vector2).set(camera.near, camera.far);
     uniforms["reach"]!.value = Math.max(1, Math.round(kReach_px * ratio));
     this.renderer.setRenderTarget(null);

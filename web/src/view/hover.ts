@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nearest point whose square is under the cursor, by a bounding volume hierarchy.
 import * as THREE from "three";
+import { depthRow, isOrthographic } from "./side_camera";
 import { INTERSECTED, NOT_INTERSECTED, PointsBVH } from "three-mesh-bvh";
 
 /** Parts of a hierarchy that go from the worker to the page. */
@@ -56,7 +57,7 @@ export class HoverTree {
   }
 
   /**
-   * Calls for each vertex whose centre is less than `half_px` from (x, y) in the picture, in no order; depth is w.
+   * Calls for each vertex whose centre is less than `half_px` from (x, y) in the picture, in no order; depth is as depthRow() has it.
    * Where `visit` answers a depth, what is farther than that is left out.
    */
   around(
@@ -78,12 +79,13 @@ export class HoverTree {
     const plane = (r: number[], times: number, sign: number) => r.map((value, i) => sign * (value - times * rw[i]!));
     const planes = [plane(rx, left, 1), plane(rx, right, -1), plane(ry, bottom, 1), plane(ry, top, -1), plane(rz, -1, 1)];
     let farthest = Infinity;
-    const ahead = rw;
+    const orthographic = isOrthographic(clip_scene);
+    const ahead = depthRow(clip_scene);
     const depthOf = (box: THREE.Box3) =>
-      ahead[0]! * (ahead[0]! > 0 ? box.min.x : box.max.x) +
-      ahead[1]! * (ahead[1]! > 0 ? box.min.y : box.max.y) +
-      ahead[2]! * (ahead[2]! > 0 ? box.min.z : box.max.z) +
-      ahead[3]!;
+      ahead[0] * (ahead[0] > 0 ? box.min.x : box.max.x) +
+      ahead[1] * (ahead[1] > 0 ? box.min.y : box.max.y) +
+      ahead[2] * (ahead[2] > 0 ? box.min.z : box.max.z) +
+      ahead[3];
     const cast: Shapecast = {
       boundsTraverseOrder: depthOf,
       intersectsBounds: (box) => {
@@ -95,13 +97,14 @@ export class HoverTree {
         return INTERSECTED;
       },
       intersectsPoint: (p, index) => {
-        const w = e[3]! * p.x + e[7]! * p.y + e[11]! * p.z + e[15]!;
-        if (!(w > 0) || w > farthest) return false;
+        const depth = ahead[0] * p.x + ahead[1] * p.y + ahead[2] * p.z + ahead[3];
+        if (!(depth > 0) || depth > farthest) return false;
+        const w = orthographic ? 1 : depth;
         const u = 0.5 * width * ((e[0]! * p.x + e[4]! * p.y + e[8]! * p.z + e[12]!) / w + 1);
         const v = 0.5 * height * (1 - (e[1]! * p.x + e[5]! * p.y + e[9]! * p.z + e[13]!) / w);
         if (Math.abs(u - x) > half_px || Math.abs(v - y) > half_px) return false;
         if (e[2]! * p.x + e[6]! * p.y + e[10]! * p.z + e[14]! < -w) return false;
-        farthest = Math.min(farthest, visit(this.order[index]!, w));
+        farthest = Math.min(farthest, visit(this.order[index]!, depth));
         return false;
       },
     };

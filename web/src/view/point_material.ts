@@ -7,10 +7,12 @@ export interface PointUniforms {
   palette: THREE.IUniform<THREE.DataTexture>;
   size: THREE.IUniform<number>; // px
   heat: THREE.IUniform<boolean>; // margins are shown
+  low: THREE.IUniform<THREE.Vector3>; // corners of the clip box
+  high: THREE.IUniform<THREE.Vector3>;
   spacing: THREE.IUniform<number>; // m, times the pixels that a metre is wide 1 m away
 }
 
-// A point's state: slot of its label, margin, and whether it stands out.
+// A point's state: slot of its label, margin, and whether it stands out; or that no point is there.
 const kVertex = /* glsl */ `
 precision highp float;
 precision highp int;
@@ -20,6 +22,8 @@ uniform float size;
 uniform highp sampler2D palette;
 uniform bool heat;
 uniform float spacing;
+uniform vec3 low;
+uniform vec3 high;
 in vec3 position;
 in vec4 color;
 in uint state;
@@ -49,13 +53,15 @@ void main() {
   uint slot = state & 0xfffffu;
   vec4 label = texelFetch(palette, ivec2(slot & 1023u, slot >> 10u), 0);
   gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
-  if (label.a == 0.0) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+  bool inside = all(greaterThanEqual(position, low)) && all(lessThanEqual(position, high));
+  bool empty = (state >> 29u & 1u) != 0u;
+  if (label.a == 0.0 || empty || !inside) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = size;
 #ifdef ID
   uint number = uint(gl_VertexID) + 1u;
   id = vec4(number & 255u, number >> 8u & 255u, number >> 16u & 255u, number >> 24u) / 255.0;
 #else
-  bool out_stands = (state >> 28u) != 0u;
+  bool out_stands = (state >> 28u & 1u) != 0u;
   vec3 own = color.rgb;
   if (heat) own = heated(own, 1.0 - float(state >> 20u & 255u) / 255.0);
 #ifdef LABELS_ONLY

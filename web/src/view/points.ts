@@ -3,12 +3,15 @@
 import * as THREE from "three";
 import { Palette, kSlotBits } from "./palette";
 import { type PointMode, type PointUniforms, pointMaterial } from "./point_material";
+import type { Run } from "./tile_room";
+import { DirectMap, HashedMap, type VertexMap } from "./vertex_map";
 import type { CloudInfo, Painter, PointChunk, Rgb } from "./types";
 
-const kNone = 0xffffffff;
 const kSlotMask = (1 << kSlotBits) - 1;
 const kMarginMask = 255 << kSlotBits;
 const kStandsOut = 1 << 28;
+const kEmpty = 1 << 29; // no point is there
+const kFar = 1e30; // m; no clip box
 const kBlock = 1024; // vertices that are uploaded together
 
 export class PointCloud {
@@ -19,12 +22,14 @@ export class PointCloud {
     size: { value: 4 },
     heat: { value: false },
     spacing: { value: 0 },
+    low: { value: new THREE.Vector3().setScalar(-kFar) },
+    high: { value: new THREE.Vector3().setScalar(kFar) },
   };
   vertices = 0;
   room = 0;
   positions = new Float32Array(); // less `origin`
   private points = new Uint32Array(); // number of each vertex's point in the file
-  private vertexOf = new Uint32Array();
+  private vertexOf: VertexMap = new DirectMap(0);
   private colors = new Uint8Array();
   private own: Uint8Array | null = null; // colours of the file, while others are shown
   private painter: Painter | null = null;
@@ -40,10 +45,20 @@ export class PointCloud {
   }
 
   begin(cloud: CloudInfo): void {
-    this.room = cloud.shown;
+    this.allocate(cloud.shown, new DirectMap(cloud.points));
+  }
+
+  /** Room for tiles, which come and go. */
+  beginTiles(room: number): void {
+    this.allocate(room, new HashedMap(room));
+    this.states.fill(kEmpty);
+  }
+
+  private allocate(room: number, vertexOf: VertexMap): void {
+    this.room = room;
+    this.vertexOf = vertexOf;
     this.positions = new Float32Array(3 * this.room);
     this.points = new Uint32Array(this.room);
-    this.vertexOf = new Uint32Array(cloud.points).fill(kNone);
     this.colors = new Uint8Array(4 * this.room);
     this.states = new Uint32Array(this.room);
     this.changed = new Uint8Array(Math.ceil(this.room / kBlock));
@@ -56,32 +71,47 @@ export class PointCloud {
 
   append(chunk: PointChunk): void {
     const first = this.vertices;
-    const count = Math.min(chunk.points.length, this.room - first);
+    this.place(chunk, 0, { at: first, count: Math.min(chunk.points.length, this.room - first) });
+  }
+
+  /** Puts the chunk's points from `begin` on at these vertices. */
+  place(chunk: PointChunk, begin: number, { at: first, count }: Run): void {
     const { positions, origin, states } = this;
-    for (let i = 0, at = 3 * first; i < 3 * count; i += 3, at += 3) {
+    const end = begin + count;
+    for (let i = 3 * begin, at = 3 * first; i < 3 * end; i += 3, at += 3) {
       positions[at] = chunk.positions[i]! - origin[0];
       positions[at + 1] = chunk.positions[i + 1]! - origin[1];
       positions[at + 2] = chunk.positions[i + 2]! - origin[2];
     }
-    this.points.set(chunk.points.subarray(0, count), first);
-    const own = chunk.colors.subarray(0, 4 * count);
+    this.points.set(chunk.points.subarray(begin, end), first);
+    const own = chunk.colors.subarray(4 * begin, 4 * end);
     this.own?.set(own, 4 * first);
-    this.colors.set(this.painter?.(chunk.positions, first, count) ?? own, 4 * first);
+    const width = chunk.values ? chunk.values.length / chunk.points.length : 0;
+    const values = chunk.values?.subarray(width * begin, width * end);
+    this.colors.set(this.painter?.(chunk.positions.subarray(3 * begin, 3 * end), first, count, values) ?? own, 4 * first);
     let label = 0;
     let slot = 0;
     for (let i = 0; i < count; ++i) {
-      this.vertexOf[chunk.points[i]!] = first + i;
-      if (chunk.labels[i] !== label) {
-        label = chunk.labels[i]!;
+      this.vertexOf.set(chunk.points[begin + i]!, first + i);
+      if (chunk.labels[begin + i] !== label) {
+        label = chunk.labels[begin + i]!;
         slot = this.palette.slotOf(label);
       }
       states[first + i] = slot;
     }
-    this.vertices += count;
+    this.vertices = Math.max(this.vertices, first + count);
     for (const [name, width] of [["position", 3], ["color", 4], ["state", 1]] as const) {
       const attribute = this.attribute(name);
       attribute.addUpdateRange(width * first, width * count);
       attribute.needsUpdate = true;
+    }
+  }
+
+  /** No points are at these vertices any more. */
+  clear({ at: first, count }: Run): void {
+    for (let vertex = first; vertex < first + count; ++vertex) {
+      this.vertexOf.delete(this.points[vertex]!);
+      this.change(vertex, 0xffffffff, kEmpty);
     }
   }
 
@@ -103,17 +133,17 @@ export class PointCloud {
 
   setLabel(label: number, points: Uint32Array): void {
     const slot = this.palette.slotOf(label);
-    for (const point of points) this.change(this.vertexOf[point], kSlotMask, slot);
+    for (const point of points) this.change(this.vertexOf.get(point), kSlotMask, slot);
   }
 
   labelOf(point: number): number {
-    const vertex = this.vertexOf[point];
-    return vertex === undefined || vertex === kNone ? 0 : this.palette.labelOf(this.states[vertex]! & kSlotMask);
+    const vertex = this.vertexOf.get(point);
+    return vertex === undefined ? 0 : this.palette.labelOf(this.states[vertex]! & kSlotMask);
   }
 
   positionOf(point: number): [number, number, number] | undefined {
-    const vertex = this.vertexOf[point];
-    return vertex === undefined || vertex === kNone ? undefined : this.positionOfVertex(vertex);
+    const vertex = this.vertexOf.get(point);
+    return vertex === undefined ? undefined : this.positionOfVertex(vertex);
   }
 
   positionOfVertex(vertex: number): [number, number, number] {
@@ -130,7 +160,23 @@ export class PointCloud {
   }
 
   isDrawn(vertex: number): boolean {
-    return this.palette.isVisible(this.states[vertex]! & kSlotMask);
+    const at = 3 * vertex;
+    const inside = this.isInside(this.positions[at]!, this.positions[at + 1]!, this.positions[at + 2]!);
+    const state = this.states[vertex]!;
+    return inside && (state & kEmpty) === 0 && this.palette.isVisible(state & kSlotMask);
+  }
+
+  /** A place less the origin. */
+  isInside(x: number, y: number, z: number): boolean {
+    const { low, high } = { low: this.uniforms.low.value, high: this.uniforms.high.value };
+    return x >= low.x && y >= low.y && z >= low.z && x <= high.x && y <= high.y && z <= high.z;
+  }
+
+  setClip(box: { low: readonly number[]; high: readonly number[] } | null): void {
+    const of = (sides: readonly number[] | undefined, none: number): [number, number, number] =>
+      sides ? [sides[0]! - this.origin[0], sides[1]! - this.origin[1], sides[2]! - this.origin[2]] : [none, none, none];
+    this.uniforms.low.value.set(...of(box?.low, -kFar));
+    this.uniforms.high.value.set(...of(box?.high, kFar));
   }
 
   setMargins(margins: Uint8Array | null): void {
@@ -142,9 +188,14 @@ export class PointCloud {
     this.anyChanged = true;
   }
 
+  setMarginsOf({ at, count }: Run, margins: Uint8Array): void {
+    this.uniforms.heat.value = true;
+    for (let i = 0; i < count; ++i) this.change(at + i, kMarginMask, margins[i]! << kSlotBits);
+  }
+
   highlight(points: Uint32Array): void {
-    for (const point of this.standing) this.change(this.vertexOf[point], kStandsOut, 0);
-    for (const point of points) this.change(this.vertexOf[point], kStandsOut, kStandsOut);
+    for (const point of this.standing) this.change(this.vertexOf.get(point), kStandsOut, 0);
+    for (const point of points) this.change(this.vertexOf.get(point), kStandsOut, kStandsOut);
     this.standing = points;
   }
 
@@ -178,7 +229,7 @@ export class PointCloud {
   }
 
   private change(vertex: number | undefined, mask: number, bits: number): void {
-    if (vertex === undefined || vertex === kNone) return;
+    if (vertex === undefined) return;
     this.states[vertex] = (this.states[vertex]! & ~mask) | bits;
     this.changed[Math.floor(vertex / kBlock)] = 1;
     this.anyChanged = true;

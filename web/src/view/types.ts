@@ -11,11 +11,19 @@ export interface PointChunk {
   points: Uint32Array; // indices in the cloud's file
   colors: Uint8Array; // r, g, b, 255
   labels: Uint32Array;
+  values?: Float32Array; // the field that is shown, of tiles
+}
+
+/** The answer to `octree`. */
+export interface Octree {
+  cube: readonly [number, number, number, number]; // least corner, edge
+  nodes: ArrayBuffer; // per node u32 parent, level, x, y, z, count, f32 spacing
 }
 
 export interface CloudInfo {
   points: number; // in the file: the length of a map from them to vertices
   shown: number; // vertices there will be
+  tiles?: number; // they come in tiles: how many there are
   bounds: readonly number[]; // x0, y0, z0, x1, y1, z1
   up: readonly number[];
   spacing_m: number;
@@ -42,12 +50,34 @@ export interface SelectionPicture {
   point_size_px: number;
 }
 
-/** Colours, r, g, b, 255, of `count` vertices from `first` on, whose places are these (x, y, z). */
-export type Painter = (positions: Float32Array, first: number, count: number) => Uint8Array;
+/**
+ * Colours, r, g, b, 255, of `count` vertices from `first` on, whose places are these (x, y, z). `values`: what came
+ * with a tile. null: their own.
+ */
+export type Painter = (positions: Float32Array, first: number, count: number, values?: Float32Array) => Uint8Array | null;
+
+/** Box around a label: size along its axes, metres; colour 0 to 255. */
+export interface LabelBox {
+  center: readonly number[];
+  size: readonly number[];
+  axes: readonly (readonly number[])[];
+  color: Rgb;
+}
 
 export interface CloudLayer {
   begin(cloud: CloudInfo): void;
   append(chunk: PointChunk): void;
+  /** After begin(): the points come in tiles. Calls `wake` when others may be wanted. */
+  beginTiles(octree: Octree, vertices: number, wake: () => void): void;
+  /** Tiles to ask for now, with at most `mostPoints` points, and those to give up for them; null: none. */
+  nextTiles(mostPoints: number): { nodes: number[]; drop: number[] } | null;
+  /** The tiles' points, one tile after the other. */
+  addTiles(nodes: readonly number[], chunk: PointChunk): void;
+  heldTiles(): { node: number; count: number }[];
+  /** Gives up all tiles, so that they come anew. */
+  dropTiles(): void;
+  /** As setMargins, of these tiles. */
+  setTileMargins(nodes: readonly number[], margins: Uint8Array): void;
   /** Colours in place of the points' own, now and for points that come; null: their own. */
   setPainter(painter: Painter | null): void;
   /** The labels of these points are now this one. */
@@ -55,6 +85,12 @@ export interface CloudLayer {
   setLabelColor(label: number, color: Rgb): void;
   /** Hidden: its points are not drawn, picked or selected. Label 0 is the points without one. */
   setLabelVisible(label: number, visible: boolean): void;
+  /** Boxes that are drawn over the points; empty: none. */
+  setBoxes(boxes: readonly LabelBox[]): void;
+  /** Points outside of the box are neither drawn nor picked; null: all are. Metres, in the cloud's frame. */
+  setClip(box: { low: readonly number[]; high: readonly number[] } | null): void;
+  /** Calls `run` whenever hover() begins to find points: some time after all points are here. */
+  onHoverReady(run: () => void): void;
   labelOf(point: number): number;
   positionOf(point: number): readonly [number, number, number] | undefined;
   /** Label 0: it is none any more. Its point may be none of the cloud's that are here. */
@@ -116,6 +152,8 @@ export interface CameraFrame {
 }
 
 export type Navigation = "orbit" | "fly";
+/** Views of one window: three orthographic ones, and the perspective one that is turned. */
+export type PaneName = "top" | "front" | "side" | "free";
 
 export interface Camera {
   navigation: Navigation;
@@ -146,14 +184,19 @@ export interface Viewer {
   setBounds(bounds: readonly number[], up: readonly number[]): void;
   /** A camera drawn as a frame (the view of the step that is looked at); null: none. */
   setFrame(frame: CameraFrame | null): void;
+  /** Four views of the scene in one picture, or the free one alone. data-pane of `element` names the one in use. */
+  setFour(four: boolean): void;
+  /** Whole scene in view, in all views. */
+  fit(): void;
   /** Draws soon, once, however often it is asked. Everything above asks by itself. */
   redraw(): void;
   /** Exact, by id buffer; css pixels from the upper left corner of `element`. */
   pick(x: number, y: number): Pick | null;
   /** Quick, by a bounding volume hierarchy that is built in a worker; null while there is none. */
   hover(x: number, y: number): Pick | null;
+  /** Picture of the view in use: where the tool was begun, else where the cursor is. */
   picture(): SelectionPicture;
-  /** css pixels to pixels of picture(). */
+  /** css pixels of `element` to pixels of picture(). */
   toPicture(x: number, y: number): [number, number];
   /** Mouse: the tool has the left button unless it returns false or there is none; the camera has the others. */
   setPointerTool(tool: PointerTool | null): void;
@@ -167,6 +210,8 @@ export interface Viewer {
 
 export interface PointerTool {
   cursor: string;
+  /** Something is begun that a press elsewhere goes on with: the view in use stays so. */
+  readonly drawing?: boolean;
   down(x: number, y: number, event: PointerEvent): boolean;
   move(x: number, y: number, event: PointerEvent): void;
   up(x: number, y: number, event: PointerEvent): void;

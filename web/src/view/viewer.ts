@@ -3,11 +3,12 @@
 import * as THREE from "three";
 import { SceneCamera } from "./camera";
 import { CloudView, type Stale } from "./cloud_view";
-import { Controls } from "./controls";
+import { Controls, type Stage } from "./controls";
 import { EyeDome } from "./eye_dome";
 import { kBody, kOver, Layers } from "./layers";
 import { PixelProbe } from "./picking";
 import { Pacer } from "./pacer";
+import { type Pane, Panes } from "./panes";
 import type { CameraFrame, Pick, PointerTool, SelectionPicture, Viewer } from "./types";
 
 const kMoving_ms = 180; // since the camera moved last
@@ -33,7 +34,8 @@ class SceneViewer implements Viewer {
   private probe: PixelProbe;
   private controls: Controls;
   private pacer: Pacer;
-  private eyeDome: EyeDome | null = null; // while surfaces are shaded
+  private eyeDomes: EyeDome[] | null = null; // one for each view, while surfaces are shaded
+  private panes: Panes;
   private drawnMoving = false; // the picture was begun while the camera moved
   private resized: ResizeObserver;
   private stale: Stale = "all";
@@ -58,12 +60,14 @@ class SceneViewer implements Viewer {
     canvas.addEventListener("webglcontextrestored", () => this.redraw());
 
     this.camera = new SceneCamera(() => this.moved());
+    this.panes = new Panes(this.camera);
+    this.camera.follow(this.panes.sides);
     this.layers = new Layers(this.camera, this.element, () => this.redraw());
     this.cloud = new CloudView(this.camera, this.scene, (what) => this.ask(what));
     this.scene.add(this.layers.group);
     this.probe = new PixelProbe(this.renderer);
     this.pacer = new Pacer(this.renderer.getContext() as WebGL2RenderingContext);
-    this.controls = new Controls(this.element, this.camera, (x, y) => this.under(x, y), () => this.moved());
+    this.controls = new Controls(this.element, this.camera, this.stage(), (x, y) => this.under(x, y), () => this.moved());
     this.resized = new ResizeObserver(() => this.resize());
     this.resized.observe(this.element);
     this.watchRatio();
@@ -84,33 +88,47 @@ class SceneViewer implements Viewer {
     this.layers.setFrame(frame);
   }
 
+  setFour(four: boolean): void {
+    this.panes.show(four);
+    this.eyeDomes?.forEach((each) => each.dispose());
+    this.eyeDomes &&= this.panes.all.map(() => new EyeDome(this.renderer));
+    this.element.dataset["pane"] = this.panes.active.name;
+    this.seen();
+    this.redraw();
+  }
+
+  fit(): void {
+    for (const side of this.panes.sides) side.fit();
+    this.camera.fit();
+  }
+
   pick(x: number, y: number): Pick | null {
-    const size = this.size();
-    const [px, py] = this.toPicture(x, y).map(Math.floor) as [number, number];
-    if (px < 0 || py < 0 || px >= size[0] || py >= size[1]) return null;
-    this.camera.update();
+    const { pane, at } = this.lookInto(x, y);
+    const [px, py] = at.map(Math.floor) as [number, number];
+    if (px < 0 || py < 0 || px >= pane.width || py >= pane.height) return null;
+    const size = [pane.width, pane.height] as const;
     this.layers.group.visible = false;
     this.cloud.beginPick(px + 0.5, py + 0.5, size, this.ratio);
-    const bytes = this.probe.read(this.scene, this.camera.camera, px, py, size);
+    const bytes = this.probe.read(this.scene, pane.eye.camera, px, py, size);
     this.layers.group.visible = true;
     return this.cloud.endPick(PixelProbe.number(bytes));
   }
 
   hover(x: number, y: number): Pick | null {
-    this.camera.update();
-    return this.cloud.hover(...this.toPicture(x, y), this.size(), this.ratio);
+    return this.near(x, y, 0);
   }
 
   picture(): SelectionPicture {
-    this.camera.update();
-    const e = this.camera.clipWorld().elements;
+    const { eye, width, height } = this.panes.active;
+    eye.update();
+    const e = eye.clipWorld().elements;
     const clip_world = Array.from({ length: 16 }, (_, i) => e[4 * (i % 4) + Math.floor(i / 4)]!);
-    return { size: this.size(), clip_world, point_size_px: this.cloud.size_px(this.ratio) };
+    return { size: [width, height], clip_world, point_size_px: this.cloud.size_px(this.ratio) };
   }
 
   toPicture(x: number, y: number): [number, number] {
-    const size = this.size();
-    return [(x * size[0]) / this.element.clientWidth, (y * size[1]) / this.element.clientHeight];
+    const [u, v] = this.toCanvas(x, y);
+    return [u - this.panes.active.x, v - this.panes.active.y];
   }
 
   setPointerTool(tool: PointerTool | null): void {
@@ -123,15 +141,15 @@ class SceneViewer implements Viewer {
   }
 
   setShading(shaded: boolean): void {
-    if (shaded === (this.eyeDome !== null)) return;
-    this.eyeDome?.dispose();
-    this.eyeDome = shaded ? new EyeDome(this.renderer) : null;
+    if (shaded === (this.eyeDomes !== null)) return;
+    this.eyeDomes?.forEach((each) => each.dispose());
+    this.eyeDomes = shaded ? this.panes.all.map(() => new EyeDome(this.renderer)) : null;
     this.redraw();
   }
 
   dispose(): void {
     this.disposed = true;
-    this.eyeDome?.dispose();
+    this.eyeDomes?.forEach((each) => each.dispose());
     this.resized.disconnect();
     this.controls.dispose();
     this.camera.stop();
@@ -144,6 +162,50 @@ class SceneViewer implements Viewer {
 
   private get ratio(): number {
     return Math.min(window.devicePixelRatio || 1, 3);
+  }
+
+  private toCanvas(x: number, y: number): [number, number] {
+    const size = this.size();
+    return [(x * size[0]) / this.element.clientWidth, (y * size[1]) / this.element.clientHeight];
+  }
+
+  /** The view under the cursor, ready to be looked into, and the pixel there. */
+  private lookInto(x: number, y: number): { pane: Pane; at: [number, number] } {
+    const [u, v] = this.toCanvas(x, y);
+    const pane = this.panes.at(u, v);
+    pane.eye.update();
+    this.cloud.lookFrom(pane.eye);
+    return { pane, at: [u - pane.x, v - pane.y] };
+  }
+
+  private near(x: number, y: number, reach_px: number): Pick | null {
+    const { pane, at } = this.lookInto(x, y);
+    return this.cloud.hover(...at, [pane.width, pane.height], this.ratio, reach_px);
+  }
+
+  private stage(): Stage {
+    const { panes } = this;
+    const at = (x: number, y: number) => panes.at(...this.toCanvas(x, y));
+    const css = () => this.element.clientWidth / this.size()[0];
+    return {
+      enter: (x, y) => {
+        panes.active = at(x, y);
+        this.element.dataset["pane"] = panes.active.name;
+      },
+      isIn: (x, y) => at(x, y) === panes.active,
+      get side() {
+        return panes.active.side;
+      },
+      get area() {
+        const { x, y, width, height } = panes.active;
+        return { left: x * css(), top: y * css(), width: width * css(), height: height * css() };
+      },
+    };
+  }
+
+  /** Tells the cloud in which pictures it is seen. */
+  private seen(): void {
+    this.cloud.setPictures(this.panes.all.map(({ eye, height }) => ({ eye, height_px: height })));
   }
 
   private size(): [number, number] {
@@ -163,7 +225,8 @@ class SceneViewer implements Viewer {
     const height = Math.max(1, Math.min(8192, Math.round(this.element.clientHeight * this.ratio)));
     const [oldWidth, oldHeight] = this.size();
     if (width !== oldWidth || height !== oldHeight) this.renderer.setSize(width, height, false);
-    this.camera.camera.aspect = width / height;
+    this.panes.layOut(width, height);
+    this.seen();
     this.ask("all");
     // At once: a canvas of a new size is empty.
     if (!this.pacer.busy) this.step();
@@ -190,7 +253,8 @@ class SceneViewer implements Viewer {
     const began = performance.now();
     const moving = began - this.movedAt < kMoving_ms;
     // What is seen through was drawn over half a picture: at rest it comes last.
-    const again = this.drawnMoving && !moving && this.eyeDome === null && layers.seeThrough;
+    const shaded = this.eyeDomes !== null;
+    const again = this.drawnMoving && !moving && !shaded && layers.seeThrough;
     // Where only colours changed: the same squares once more over themselves, so that nothing flickers.
     const clear = this.stale === "all" || again;
     const anew = this.stale !== "nothing" || again;
@@ -199,28 +263,31 @@ class SceneViewer implements Viewer {
     const work = layers.work;
     const all = work + cloud.vertices;
     const from = this.drawn;
-    const to = this.pacer.upTo(from, all, moving);
+    const views = this.panes.all.length; // each draws all
+    const to = Math.min(all, Math.ceil(this.pacer.upTo(views * from, views * all, moving) / views));
     if (!anew && to === from) return this.tell();
 
     if (anew) {
       this.began = began;
       this.drawnMoving = moving && to < all;
-      this.camera.update();
+      for (const { eye } of this.panes.all) eye.update();
     }
-    const size = this.size();
     const { shared } = layers;
-    shared.height.value = size[1];
-    shared.picture.value.set(...size);
     shared.width.value = kLine_px * this.ratio;
     shared.size.value = cloud.size_px(this.ratio);
     const share = (vertices: number) => (work > 0 ? Math.min(vertices / work, 1) : vertices > 0 || all === 0 ? 1 : 0);
-    const through = moving || this.eyeDome !== null ? (all > 0 ? to / all : 1) : to === all ? 1 : 0;
-    layers.draw(share(from), share(to), through, anew || this.eyeDome !== null);
-    cloud.draw(Math.max(from - work, 0), Math.max(to - work, 0), size, this.ratio);
-    this.render(clear, size);
-    const vertices = to - from;
+    const through = moving || shaded ? (all > 0 ? to / all : 1) : to === all ? 1 : 0;
+    layers.draw(share(from), share(to), through, anew || shaded);
+    this.panes.all.forEach((pane, i) => {
+      const size = [pane.width, pane.height] as const;
+      shared.height.value = size[1];
+      shared.picture.value.set(...size);
+      cloud.lookFrom(pane.eye);
+      cloud.draw(Math.max(from - work, 0), Math.max(to - work, 0), size, this.ratio);
+      this.render(clear, pane, this.eyeDomes?.[i] ?? null);
+    });
     this.drawn = to;
-    this.pacer.drew(vertices, (ms) => {
+    this.pacer.drew(views * (to - from), (ms) => {
       ++this.stats.frames;
       this.stats.lastFrame_ms = ms;
       this.stats.vertices = to;
@@ -235,9 +302,12 @@ class SceneViewer implements Viewer {
     });
   }
 
-  private render(clear: boolean, size: readonly [number, number]): void {
-    const { renderer, eyeDome } = this;
-    const { camera } = this.camera;
+  private render(clear: boolean, { eye: { camera }, x, y, width, height }: Pane, eyeDome: EyeDome | null): void {
+    const { renderer } = this;
+    const below = this.size()[1] - y - height;
+    renderer.setViewport(x, below, width, height);
+    renderer.setScissor(x, below, width, height);
+    renderer.setScissorTest(this.panes.four);
     if (eyeDome === null) {
       camera.layers.enableAll();
       if (clear) renderer.clear();
@@ -245,9 +315,9 @@ class SceneViewer implements Viewer {
       return;
     }
     camera.layers.set(kBody);
-    eyeDome.begin(size, clear);
+    eyeDome.begin([width, height], clear);
     renderer.render(this.scene, camera);
-    eyeDome.compose(camera, this.ratio);
+    eyeDome.compose(camera, this.ratio, [x, below]);
     camera.layers.set(kOver);
     renderer.render(this.scene, camera);
     camera.layers.enableAll();
@@ -260,15 +330,13 @@ class SceneViewer implements Viewer {
 
   private moved(): void {
     this.movedAt = performance.now();
+    this.cloud.moved();
     this.redraw();
   }
 
   private under(x: number, y: number): THREE.Vector3 | null {
     this.camera.update();
-    const found =
-      this.cloud.treeReady || this.cloud.vertices > kQuickPick
-        ? (this.hover(x, y) ?? this.cloud.hover(...this.toPicture(x, y), this.size(), this.ratio, kReach_px))
-        : this.pick(x, y);
+    const found = this.cloud.treeReady || this.cloud.vertices > kQuickPick ? (this.hover(x, y) ?? this.near(x, y, kReach_px)) : this.pick(x, y);
     const point = found === null ? null : new THREE.Vector3(...found.position).sub(this.camera.origin);
     const { position } = this.camera.camera;
     const places = this.layers.any ? [this.layerUnder(x, y), this.layers.pointUnder(...this.toPicture(x, y), this.size())] : [];

@@ -160,8 +160,9 @@ export function comparison(): { record: Record; details: unknown } {
     const of = (name: string, scale: number) => ({ name, x: [0, 1, 2, 3], y: [35, 70, 85, 97].map((y) => y * scale), low: [34, 66, 80, 95].map((y) => y * scale), high: [36, 74, 90, 99].map((y) => y * scale) });
     return { scene, coverage: [of("surface", 1), of("random", 0.9)], unknown: [of("surface", 20), of("random", 25)] };
   };
+  const slice = (index: number, state: string, done: number) => ({ slice: index, of: 2, state, planned: 6, done, tries: 1 + index, machine: "node1", job: `12_${index}`, began: "2024-06-30T12:00:00Z", ended: "2024-06-30T12:10:00Z", error: "" });
   const all = [null, ...scenes];
-  const result = { summaries: all.flatMap((scene) => [group(scene, "surface", 0.8), group(scene, "random", 0.74)]), gaps: [], robot: "free", max_views: 4, seeds: [1, 2, 3], runs: { planned: 12, done: 12 } };
+  const result = { summaries: all.flatMap((scene) => [group(scene, "surface", 0.8), group(scene, "random", 0.74)]), gaps: [], robot: "free", max_views: 4, seeds: [1, 2, 3], runs: { planned: 12, done: 12 }, slices: [slice(0, "done", 6), { ...slice(1, "failed", 4), error: "clutter:6: no surface of an object can be seen" }] };
   const marks = scenes.flatMap((scene) => [1, 2].map((seed) => ({ scene, label: "surface", seed, marks: [true, false, true] })));
   return { record: { command: "compare", result }, details: { measures, gaps: all.map((scene, i) => gap(scene, i === 0 ? 0.09 : 0.03)), curves: all.map(curve), marks, facts: [{ name: "voxel size", value: "5.80 mm" }] } };
 }
@@ -180,4 +181,27 @@ export function segments(): { record: Record; pictures: string[] } {
 export function filtered(): { record: Record; pictures: string[] } {
   const details = [1, 2].map((i) => ({ frame: `frame-${i}.png`, points: 200_000, shadow: 900 * i, veil: 400, out_of_range: 3, ms: 7.5 }));
   return { record: { command: "filter", result: { out: "filtered", method: "full", frames: 2, points: 400_000, shadow: 2700, veil: 800, ms_per_frame: { median: 7.5 }, details } }, pictures: ["frame-1.png", "pictures/frame-1.png", "pictures/frame-2.png"] };
+}
+
+/** A benchmark: a comparison with a table of ours and published figures. */
+export function benchmark(): { record: Record; details: unknown } {
+  const { record, details } = comparison();
+  const share = (mean: number) => ({ n: 2, mean, low: mean - 0.01, high: mean + 0.01 });
+  record.command = "benchmark";
+  delete record.result["slices"];
+  record.result["benchmark"] = {
+    name: "one-shot",
+    version: 1,
+    text: "an object on a table, 32 views over it",
+    measure: "coverage: share of the voxels of 6.25 mm with surface in which a point was measured",
+    objects: ["figure@4"],
+    stand_ins: true,
+    table: [
+      { method: "surface", views: 12, published: false, of_visible: share(0.99), of_all: share(0.972) },
+      { method: "MA-SCVP", views: 12.2, published: true, coverage: 0.931, year: null, source: "a survey", object: "mean over its objects", differs: "other objects" },
+    ],
+    beside_published: ["surface after 12 views: 97.2 % of all; MA-SCVP 93.1 % after 12.2: not below it (other objects)"],
+    not_published: "",
+  };
+  return { record, details };
 }

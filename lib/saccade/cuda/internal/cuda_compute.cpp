@@ -128,14 +128,24 @@ class CudaCompute final : public Compute {
 
 }  // namespace
 
-Result<std::unique_ptr<Compute>> open_cuda() {
-  if (kernel_ptx().empty()) return without_kernels();
+std::string with_blocks_per_unit(std::string_view ptx, std::string_view kernel, unsigned blocks) {
+  constexpr std::string_view kLimit{".minnctapersm "};
+  std::string text{ptx};
+  const std::size_t entry = text.find(".entry " + std::string{kernel} + "(");
+  const std::size_t limit = entry == std::string::npos ? entry : text.find(kLimit, entry);
+  if (limit == std::string::npos) return text;
+  const std::size_t begin = limit + kLimit.size();
+  return text.replace(begin, text.find('\n', begin) - begin, std::to_string(blocks));
+}
+
+Result<std::unique_ptr<Compute>> open_cuda(std::string_view ptx) {
+  if (ptx.empty()) return without_kernels();
   SACCADE_TRY(const Driver* const driver, Driver::load());
   SACCADE_TRY(const DeviceHandle device, first_device(*driver));
   ContextHandle context{nullptr};
   SACCADE_CHECK(driver->check(driver->cuDevicePrimaryCtxRetain(&context, device), "starting the GPU"));
   auto compute = std::make_unique<CudaCompute>(*driver, device, context);
-  SACCADE_CHECK(compute->load(std::string{kernel_ptx()}));
+  SACCADE_CHECK(compute->load(std::string{ptx}));
   return std::unique_ptr<Compute>{std::move(compute)};
 }
 

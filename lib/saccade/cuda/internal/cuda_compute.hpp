@@ -3,6 +3,7 @@
 // CudaCompute: memory and kernels of an NVIDIA GPU, by its driver alone.
 
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "saccade/cuda/device.hpp"
@@ -15,8 +16,12 @@ namespace saccade::internal::cuda {
 /// Names the virtual architecture of the PTX.
 [[nodiscard]] std::string_view ptx_target();
 
+/// Returns the text with another kBlocksPerUnit of a kernel, by which the driver limits its registers; unchanged where
+/// there is no such kernel.
+[[nodiscard]] std::string with_blocks_per_unit(std::string_view ptx, std::string_view kernel, unsigned blocks);
+
 /// Opens the first device and loads the kernels. Answers unavailable, with the reason, where that cannot be.
-[[nodiscard]] Result<std::unique_ptr<Compute>> open_cuda();
+[[nodiscard]] Result<std::unique_ptr<Compute>> open_cuda(std::string_view ptx = kernel_ptx());
 /// Describes the first device without loading anything onto it.
 [[nodiscard]] Result<CudaDevice> describe_cuda();
 

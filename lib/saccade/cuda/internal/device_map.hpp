@@ -65,6 +65,7 @@ constexpr int kSurfaceFree{32767};  ///< v of free space, kTsdfOne
 struct MapView {
   TableBox bricks;
   BrickEntry* entries{nullptr};
+  std::uint8_t* touched{nullptr};    ///< whether kernels changed a brick since the host last read it
   std::int16_t* v{nullptr};          ///< kBrickVoxels of each slot
   std::uint16_t* w{nullptr};         ///< likewise
   std::uint64_t* unknown{nullptr};   ///< kBrickWords of each slot

@@ -279,6 +279,7 @@ struct FuseBricks {
       write_masks(a, shared, thread);
     } else if (thread.index == 0 && shared.after.bits != shared.before.bits) {
       a.map.entries[table_index(a, thread)] = shared.after;
+      a.map.touched[table_index(a, thread)] = 1;
     }
   }
 
@@ -357,6 +358,7 @@ struct FuseBricks {
       }
       a.map.entries[table_index(a, thread)] =
           BrickEntry::at(shared.after.slot(), (unknown | occupied) != 0, occupied != 0);
+      a.map.touched[table_index(a, thread)] = 1;
     }
   }
 };

@@ -82,7 +82,11 @@ struct GainArguments {
   const MapView& map = a.map;
   const RaySpan region = clip(ray, a.region_voxels);
   if (region.empty()) return false;
-  const RaySpan span = RaySpan{kRayStart, after_depth(a.max_t)}.until(region.exit);
+  // As RaySpan::until, by value: a reference to one of two events would put both on the stack.
+  RaySpan span{kRayStart, after_depth(a.max_t)};
+  const bool leaves = before(region.exit, span.exit);
+  span.exit.t = leaves ? region.exit.t : span.exit.t;
+  span.exit.axis = leaves ? region.exit.axis : span.exit.axis;
   if (span.empty()) return false;
   bool scores{false};
   const auto visit_voxel = [&](BrickEntry entry, const Index3& voxel, const RaySpan& in_voxel) {

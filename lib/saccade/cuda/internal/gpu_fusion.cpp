@@ -41,7 +41,8 @@ FusionArguments fusion_arguments(const TsdfConfig& config, const PinholeCamera& 
 }  // namespace
 
 Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const PinholeCamera& camera, const DepthImage& depth,
-                                         const Pose& T_world_camera, BrickStore& bricks) {
+                                         const Pose& T_world_camera, BrickStore& bricks, const BringIn& bring_in) {
+  began_ = false;
   SACCADE_CHECK(check_frame(camera, depth, T_world_camera, nullptr));
   const Stopwatch stopwatch;
   SACCADE_CHECK(depths_m_.assign({depth.data(), depth.size()}));
@@ -73,6 +74,11 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
   if (reach_m > 0.0) {
     SACCADE_TRY(const IndexBox sectors, sectors_in_frustum(a.camera, T_world_camera, reach_m, config.voxel_size_m));
     const IndexBox candidates{sectors.lo * kSectorEdge, sectors.hi * kSectorEdge};
+    if (bring_in) SACCADE_CHECK(bring_in(candidates));
+    if (counts[kUsedSlots] != bricks.used_slots()) {
+      counts[kUsedSlots] = static_cast<std::uint32_t>(bricks.used_slots());
+      SACCADE_CHECK(counters_.assign(counts));
+    }
     SACCADE_CHECK(bricks.cover(candidates));
     const Index3 size = candidates.size();
     a.candidates = {candidates.lo, static_cast<std::uint32_t>(size.x), static_cast<std::uint32_t>(size.y),
@@ -83,8 +89,10 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
     SACCADE_CHECK(launch<FindBricksInView>(compute_, blocks_for<FindBricksInView>(a.candidates.count()), a));
     SACCADE_CHECK(counters_.read(counts));
     SACCADE_CHECK(bricks.reserve_slots(counts[kInView]));
+    SACCADE_CHECK(bricks.reserve_pull());
     a.map = bricks.view();
     a.slots = static_cast<std::uint32_t>(bricks.slots());
+    began_ = true;
     SACCADE_CHECK(launch<FuseBricks>(compute_, counts[kInView], a));
     SACCADE_CHECK(counters_.read(counts));
     bricks.set_used_slots(counts[kUsedSlots]);
@@ -92,6 +100,7 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
     stats.bricks_updated = counts[kUpdated];
   }
   SACCADE_CHECK(compute_.finish());
+  began_ = false;
   stats.ms = stopwatch.elapsed_ms();
   return stats;
 }

@@ -2,10 +2,15 @@
 #pragma once
 // GpuFusion: fuses depth images into a BrickStore.
 
+#include <functional>
+
 #include "saccade/cuda/internal/brick_store.hpp"
 #include "saccade/cuda/internal/fusion_kernel.hpp"
 
 namespace saccade::internal::cuda {
+
+/// Makes the bricks of a box be on the device, if it is short of memory; empty: they all are.
+using BringIn = std::function<Status(const IndexBox& bricks)>;
 
 /// Buffers of a frame, which stay for the next.
 class GpuFusion {
@@ -20,13 +25,17 @@ class GpuFusion {
         in_view_{compute} {}
 
   [[nodiscard]] Result<FusionStats> integrate(const TsdfConfig& config, const PinholeCamera& camera,
-                                              const DepthImage& depth, const Pose& T_world_camera, BrickStore& bricks);
+                                              const DepthImage& depth, const Pose& T_world_camera, BrickStore& bricks,
+                                              const BringIn& bring_in = {});
+  /// Tells whether the last frame failed after the kernels began to change bricks. Before, an error changes nothing.
+  [[nodiscard]] bool failed_halfway() const { return began_; }
 
  private:
   /// Numbers that the kernels of a frame count, in device memory.
   enum Counter : std::size_t { kReach, kValid, kInView, kUsedSlots, kUpdated, kCounters };
 
   Compute& compute_;
+  bool began_{false};
   Buffer<float> depths_m_;
   Buffer<float> ranges_m_;
   Buffer<std::uint32_t> tile_reach_;

@@ -9,7 +9,6 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/views/internal/gain_problem.hpp"
-#include "saccade/views/internal/no_gain.hpp"
 
 namespace saccade::internal::cuda {
 namespace {
@@ -178,10 +177,6 @@ Result<GainResult> GpuGain::evaluate(const TsdfConfig& map, const Region& region
     }
   }
   result.evaluate_ms = stopwatch.elapsed_ms() - result.prepare_ms;
-  if (std::all_of(result.gains.begin(), result.gains.end(), [](std::uint64_t gain) { return gain == 0; })) {
-    SACCADE_TRY(const TsdfSnapshot content, bricks.snapshot(map));
-    result.no_gain = why_no_gain(content, region, T_world_camera, config);
-  }
   return result;
 }
 

@@ -8,11 +8,7 @@
 #define __shared__ __attribute__((shared))
 #define __launch_bounds__(threads, blocks) __attribute__((launch_bounds(threads, blocks)))
 
-#include "saccade/cuda/internal/align_kernel.hpp"
-#include "saccade/cuda/internal/fusion_kernel.hpp"
-#include "saccade/cuda/internal/gain_kernel.hpp"
-#include "saccade/cuda/internal/move_kernel.hpp"
-#include "saccade/cuda/internal/raycast_kernel.hpp"
+#include "saccade/cuda/internal/all_kernels.hpp"
 
 namespace cuda = saccade::internal::cuda;
 
@@ -28,15 +24,4 @@ namespace cuda = saccade::internal::cuda;
     });                                                                                                              \
   }
 
-SACCADE_KERNEL(saccade_count_scoring_rays, CountScoringRays)
-SACCADE_KERNEL(saccade_mark_blocks, MarkBlocks)
-SACCADE_KERNEL(saccade_find_ranges, FindRanges)
-SACCADE_KERNEL(saccade_find_bricks_in_view, FindBricksInView)
-SACCADE_KERNEL(saccade_fuse_bricks, FuseBricks)
-SACCADE_KERNEL(saccade_move_entries, MoveEntries)
-SACCADE_KERNEL(saccade_mark_surface_bricks, MarkSurfaceBricks)
-SACCADE_KERNEL(saccade_mark_surface_blocks, MarkSurfaceBlocks)
-SACCADE_KERNEL(saccade_cast_surface_rays, CastSurfaceRays)
-SACCADE_KERNEL(saccade_pair_pixels, PairPixels)
-SACCADE_KERNEL(saccade_sum_lanes, SumLanes)
-SACCADE_KERNEL(saccade_sum_chunks, SumChunks)
+SACCADE_ALL_KERNELS(SACCADE_KERNEL)

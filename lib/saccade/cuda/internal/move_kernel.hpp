@@ -7,13 +7,15 @@
 
 namespace saccade::internal::cuda {
 
-/// Copies the entries of one table into another, an entry per thread.
+/// Copies the entries of one table into another, and what was touched; an entry per thread.
 struct MoveEntries {
   struct Arguments {
     TableBox from_box;
     TableBox to_box;
     const BrickEntry* from;
     BrickEntry* to;
+    const std::uint8_t* touched_from;
+    std::uint8_t* touched_to;
   };
   struct Shared {};
   static constexpr const char* kName{"saccade_move_entries"};
@@ -24,7 +26,10 @@ struct MoveEntries {
   template <int kPhase>
   static SACCADE_HD void run(const Arguments& a, Shared& /*shared*/, const Thread& thread) {
     const std::uint64_t at = std::uint64_t{thread.block} * kThreads + thread.index;
-    if (at < a.from_box.count()) a.to[a.to_box.at(a.from_box.index(at))] = a.from[at];
+    if (at >= a.from_box.count()) return;
+    const std::uint64_t to = a.to_box.at(a.from_box.index(at));
+    a.to[to] = a.from[at];
+    a.touched_to[to] = a.touched_from[at];
   }
 };
 

@@ -10,20 +10,23 @@ namespace saccade {
 namespace {
 
 template <class T>
-std::string shortest(T number) {
+void append_shortest(std::string& text, T number) {
   std::array<char, 32> buffer{};
   const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-  return code == std::errc{} ? std::string{buffer.data(), end} : std::string{};
+  if (code == std::errc{}) text.append(buffer.data(), end);
 }
 
-std::string quoted(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string{text};
-  std::string result{'"'};
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
+void append_quoted(std::string& text, std::string_view field) {
+  if (field.find_first_of(",\"\r\n") == std::string_view::npos) {
+    text += field;
+    return;
   }
-  return result + '"';
+  text += '"';
+  for (const char c : field) {
+    if (c == '"') text += '"';
+    text += c;
+  }
+  text += '"';
 }
 
 }  // namespace
@@ -33,15 +36,27 @@ CsvTable::CsvTable(const std::vector<std::string_view>& columns) : columns_{colu
   end_row();
 }
 
-CsvTable& CsvTable::add(std::string_view text) {
+void CsvTable::begin_field() {
   if (fields_++ > 0) text_ += ',';
-  text_ += quoted(text);
+}
+
+CsvTable& CsvTable::add(std::string_view text) {
+  begin_field();
+  append_quoted(text_, text);
   return *this;
 }
 
-CsvTable& CsvTable::add(double number) { return add(std::string_view{shortest(number)}); }
+CsvTable& CsvTable::add(double number) {
+  begin_field();
+  append_shortest(text_, number);
+  return *this;
+}
 
-CsvTable& CsvTable::add(std::uint64_t number) { return add(std::string_view{shortest(number)}); }
+CsvTable& CsvTable::add(std::uint64_t number) {
+  begin_field();
+  append_shortest(text_, number);
+  return *this;
+}
 
 CsvTable& CsvTable::add(const std::optional<double>& number) { return number ? add(*number) : add(std::string_view{}); }
 

@@ -32,6 +32,8 @@ class CsvTable {
   [[nodiscard]] Status write(const std::filesystem::path& path) const;
 
  private:
+  void begin_field();
+
   std::size_t columns_;
   std::size_t fields_{0};  ///< fields of the current row
   std::string text_;

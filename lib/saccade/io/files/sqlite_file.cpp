@@ -49,7 +49,7 @@ Error SqliteFile::error(int code) const {
           where};
 }
 
-Result<SqliteFile> SqliteFile::open(const std::filesystem::path& path, int busy_ms) {
+Result<SqliteFile> SqliteFile::open(const std::filesystem::path& path, int busy_ms, int flags) {
   SqliteFile file;
   file.path_ = path;
   std::error_code ignored;
@@ -59,14 +59,24 @@ Result<SqliteFile> SqliteFile::open(const std::filesystem::path& path, int busy_
   sqlite3* database = nullptr;
   // Absolute, so that names such as ":memory:" or "file:x" are names of files.
   const std::string name = std::filesystem::absolute(path, ignored).string();
-  const int code = sqlite3_open_v2(name.c_str(), &database,
-                                   SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, nullptr);
+  const int code = sqlite3_open_v2(name.c_str(), &database, flags | SQLITE_OPEN_FULLMUTEX, nullptr);
   file.database_.reset(database);
   if (code != SQLITE_OK) return file.error(code);
-  if (sqlite3_db_readonly(database, "main") == 1) return file.error(SQLITE_READONLY);
   sqlite3_busy_timeout(database, busy_ms);
   sqlite3_extended_result_codes(database, 1);
   return file;
+}
+
+Result<SqliteFile> SqliteFile::open(const std::filesystem::path& path, int busy_ms) {
+  SACCADE_TRY(SqliteFile file, open(path, busy_ms, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+  if (sqlite3_db_readonly(file.database_.get(), "main") == 1) return file.error(SQLITE_READONLY);
+  return file;
+}
+
+Result<SqliteFile> SqliteFile::open_existing(const std::filesystem::path& path, int busy_ms) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return Error{Errc::not_found, "there is no such file", path.string()};
+  return open(path, busy_ms, SQLITE_OPEN_READWRITE);
 }
 
 Status SqliteFile::run(const std::string& sql) const {
@@ -115,6 +125,16 @@ void SqliteStatement::bind(double number) {
 void SqliteStatement::bind(const std::optional<double>& number) {
   if (number) return bind(*number);
   SACCADE_EXPECTS(sqlite3_bind_null(statement_.get(), ++parameter_) == SQLITE_OK);
+}
+
+void SqliteStatement::bind_next_of(SqliteStatement& row) {
+  SACCADE_EXPECTS(sqlite3_bind_value(statement_.get(), ++parameter_,
+                                     sqlite3_column_value(row.statement_.get(), row.column_++)) == SQLITE_OK);
+}
+
+void SqliteStatement::restart() {
+  sqlite3_reset(statement_.get());
+  parameter_ = 0;
 }
 
 Result<bool> SqliteStatement::step() {

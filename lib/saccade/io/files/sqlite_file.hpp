@@ -23,6 +23,9 @@ class SqliteFile {
  public:
   /// Opens or creates the file. busy_ms: how long a write waits for another process.
   [[nodiscard]] static Result<SqliteFile> open(const std::filesystem::path& path, int busy_ms);
+  /// Opens a file that exists, to read it. It may be one that cannot be written; what a killed process left half done
+  /// in it is undone. Answers not_found.
+  [[nodiscard]] static Result<SqliteFile> open_existing(const std::filesystem::path& path, int busy_ms);
 
   /// Runs statements that return no rows.
   [[nodiscard]] Status run(const std::string& sql) const;
@@ -41,6 +44,7 @@ class SqliteFile {
     void operator()(sqlite3* database) const;
   };
   SqliteFile() = default;
+  [[nodiscard]] static Result<SqliteFile> open(const std::filesystem::path& path, int busy_ms, int flags);
   std::filesystem::path path_;
   std::unique_ptr<sqlite3, Close> database_;
 };
@@ -56,11 +60,18 @@ class SqliteStatement {
   void bind(std::int64_t number);
   void bind(double number);
   void bind(const std::optional<double>& number);
+  /// Binds the next column of another statement's row, whatever its type.
+  void bind_next_of(SqliteStatement& row);
 
   /// Tells whether there is another row.
   [[nodiscard]] Result<bool> step();
+  /// Prepares a statement with rows for new values.
+  void restart();
   /// Runs a statement without rows, and prepares it for new values.
   [[nodiscard]] Status run();
+
+  /// Goes back to the first column of the row.
+  void read_again() { column_ = 0; }
 
   // Each call reads the next column of the row.
   [[nodiscard]] std::string text();

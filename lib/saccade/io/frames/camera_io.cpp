@@ -53,13 +53,16 @@ Status read_size(const nlohmann::json& object, const char* key, std::optional<in
 }
 
 Result<Distortion> distortion_from_json(const nlohmann::json& object) {
-  if (!object.is_object()) return bad_intrinsics("distortion must be an object with k1, k2, p1, p2, k3");
+  if (!object.is_object()) return bad_intrinsics("distortion must be an object with k1, k2, p1, p2, k3, k4, k5, k6");
   Distortion distortion;
-  const std::array<std::pair<const char*, double*>, 5> fields{{{"k1", &distortion.k1},
-                                                               {"k2", &distortion.k2},
-                                                               {"p1", &distortion.p1},
-                                                               {"p2", &distortion.p2},
-                                                               {"k3", &distortion.k3}}};
+  const std::array<std::pair<const char*, double*>, Distortion::kMaxCoefficients> fields{{{"k1", &distortion.k1},
+                                                                                          {"k2", &distortion.k2},
+                                                                                          {"p1", &distortion.p1},
+                                                                                          {"p2", &distortion.p2},
+                                                                                          {"k3", &distortion.k3},
+                                                                                          {"k4", &distortion.k4},
+                                                                                          {"k5", &distortion.k5},
+                                                                                          {"k6", &distortion.k6}}};
   for (const auto& [key, target] : fields) {
     std::optional<double> value;
     SACCADE_CHECK(read_number(object, key, value));

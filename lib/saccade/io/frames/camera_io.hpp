@@ -43,10 +43,10 @@ struct Intrinsics {
 /// Parses "fx,fy,cx,cy" (commas or blanks), a 3×3 matrix [fx 0 cx; 0 fy cy; 0 0 1] row by row, such a matrix within one
 /// of 3×4 or 4×4, YAML of OpenCV (camera_matrix, distortion_coefficients, image_width, image_height), or JSON: either
 /// {"width", "height", "intrinsic_matrix": nine numbers column by column} as Open3D writes it, or {"width", "height",
-/// "fx", "fy", "cx", "cy", "min_range_m", "max_range_m", "distortion": {"k1", "k2", "p1", "p2", "k3"}}, where only the
-/// focal lengths and the principal point are required. "w", "h" and "scale" within "camera" are those of NICE-SLAM;
-/// "depth_scale" is samples per metre from 100 on, metres per sample below 0.05, and an error in between. corrupt_data
-/// describes the error.
+/// "fx", "fy", "cx", "cy", "min_range_m", "max_range_m", "distortion": {"k1", "k2", "p1", "p2", "k3",
+/// "k4", "k5", "k6"}}, where only the focal lengths and the principal point are required. "w", "h" and "scale" within
+/// "camera" are those of NICE-SLAM; "depth_scale" is samples per metre from 100 on, metres per sample below 0.05, and
+/// an error in between. corrupt_data describes the error.
 [[nodiscard]] Result<Intrinsics> parse_intrinsics(std::string_view text);
 [[nodiscard]] Result<Intrinsics> read_intrinsics(const std::filesystem::path& path);
 /// Returns the second JSON form.

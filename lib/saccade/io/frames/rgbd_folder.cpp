@@ -22,6 +22,16 @@ Status check_size(const PinholeCamera& camera, int width, int height) {
                {}};
 }
 
+/// Returns the part of an image that one of several cameras took.
+template <class T>
+Image<T> strip_of(const Image<T>& image, const CameraStrip& strip) {
+  const int width = std::max(image.width() / strip.cameras, 1);
+  const int first = std::min(width * strip.camera, image.width() - width);
+  Image<T> part{width, image.height()};
+  for (int v = 0; v < image.height(); ++v) std::copy_n(image.row(v) + first, width, part.row(v));
+  return part;
+}
+
 class FolderSource final : public RgbdFolderSource {
  public:
   FolderSource(ImageCorrection correction, ImageRays rays, RgbdFolderInfo info, std::vector<RgbdFrameFiles> frames,
@@ -82,10 +92,16 @@ class FolderSource final : public RgbdFolderSource {
       return pose.error();
     }
     SACCADE_TRY(DepthImage depth, read_depth(files, own));
-    if (read_color_ && files.color) {
-      SACCADE_TRY(frame.color, read_frame_color(*files.color, own, depth));
+    const bool has_color = read_color_ && files.color;
+    if (has_color && !rays_.is_bent) {
+      SACCADE_TRY(frame.color, read_frame_color(files, own, depth));
     }
     SACCADE_TRY(frame.depth, in_file(correction_.apply(std::move(depth)), *files.depth));
+    if (has_color && rays_.is_bent) {
+      SACCADE_TRY(const ColorImage color, read_raw_color(files));
+      frame.color = seen_from_depth(color, color_rays(own).value_or(*rays_.color), frame.depth, rays_.depth,
+                                    rays_.T_color_depth.value_or(Pose::Identity()));
+    }
     return frame;
   }
 
@@ -115,30 +131,41 @@ class FolderSource final : public RgbdFolderSource {
       scale.encoding.units_per_m = *own->depth_units_per_m;
     }
     SACCADE_TRY(DepthImage depth, read_depth_image(*files.depth, scale));
+    if (files.strip) depth = strip_of(depth, *files.strip);
     const Status size = check_size(correction_.camera(), depth.width(), depth.height());
     if (!size) return in_file(size.error(), *files.depth);
     if (!own || has_same_rays(*own, rays_.depth)) return depth;
     return seen_with(depth, *own, rays_.depth, rays_.width, rays_.height);
   }
 
+  /// Returns the colours as they are in the file.
+  [[nodiscard]] Result<ColorImage> read_raw_color(const RgbdFrameFiles& files) const {
+    SACCADE_TRY(ColorImage color, saccade::read_color(*files.color));
+    if (files.strip) color = strip_of(color, *files.strip);
+    if (color.width() == rays_.color_width && color.height() == rays_.color_height) return color;
+    return Error{Errc::size_mismatch,
+                 "image is " + size_text(color.width(), color.height()) + ", not " +
+                     size_text(rays_.color_width, rays_.color_height),
+                 files.color->string()};
+  }
+
+  /// Returns the rays of a frame's colours where they are not those of its depths.
+  [[nodiscard]] std::optional<Intrinsics> color_rays(const std::optional<Intrinsics>& own) const {
+    if (own && (rays_.color || !has_same_rays(*own, rays_.depth))) return rays_.at_color_size(*own);
+    return rays_.color;
+  }
+
   /// Returns colours in the depth camera's place, corrected.
-  [[nodiscard]] Result<ColorImage> read_frame_color(const fs::path& path, const std::optional<Intrinsics>& own,
+  [[nodiscard]] Result<ColorImage> read_frame_color(const RgbdFrameFiles& files, const std::optional<Intrinsics>& own,
                                                     const DepthImage& depth) const {
-    SACCADE_TRY(ColorImage color, saccade::read_color(path));
-    if (color.width() != rays_.color_width || color.height() != rays_.color_height) {
-      return Error{Errc::size_mismatch,
-                   "image is " + size_text(color.width(), color.height()) + ", not " +
-                       size_text(rays_.color_width, rays_.color_height),
-                   path.string()};
-    }
-    std::optional<Intrinsics> from = rays_.color;
-    if (own && (from || !has_same_rays(*own, rays_.depth))) from = rays_.at_color_size(*own);
+    SACCADE_TRY(ColorImage color, read_raw_color(files));
+    const std::optional<Intrinsics> from = color_rays(own);
     if (from && rays_.T_color_depth) {
       color = seen_from_depth(color, *from, depth, rays_.depth, *rays_.T_color_depth);
     } else if (from) {
       color = seen_with(color, *from, rays_.depth, rays_.width, rays_.height);
     }
-    return in_file(correction_.apply(std::move(color)), path);
+    return in_file(correction_.apply(std::move(color)), *files.color);
   }
 
   ImageCorrection correction_;
@@ -162,7 +189,7 @@ Result<DepthImage> first_depth(const std::vector<RgbdFrameFiles>& frames, DepthU
   for (const RgbdFrameFiles& frame : frames) {
     if (!frame.depth) continue;
     auto depth = read_depth_image(*frame.depth, scale);
-    if (depth) return depth;
+    if (depth) return frame.strip ? strip_of(*depth, *frame.strip) : *std::move(depth);
     if (!first_error) first_error = depth.error();
     if (++tried == kTriedImages) break;
   }
@@ -178,7 +205,9 @@ void find_color_rays(const RgbdListing& listing, const RgbdFolderConfig& config,
   std::size_t tried = 0;
   for (const RgbdFrameFiles& frame : listing.frames) {
     if (first || !config.read_color || !frame.color || ++tried > kTriedImages) continue;
-    if (auto color = read_color(*frame.color)) first = std::move(*color);
+    if (auto color = read_color(*frame.color)) {
+      first = frame.strip ? strip_of(*color, *frame.strip) : *std::move(color);
+    }
   }
   info.has_color = first.has_value() || tried > 0;
   if (!first) return;
@@ -205,11 +234,13 @@ void find_color_rays(const RgbdListing& listing, const RgbdFolderConfig& config,
                        ", and nothing says how they lie on them");
     }
     rays.color = rays.at_color_size(rays.depth);
+    if (config.distortion) rays.color->distortion = config.distortion;
     info.notes.push_back("the " + sizes + " are taken for the view of the depth images, " +
                          size_text(rays.width, rays.height) + ", and scaled to it");
   }
-  const bool is_bent = !config.distortion.value_or(rays.depth.distortion.value_or(Distortion{})).is_zero();
-  if (rays.color && is_bent) leave_out("they have other intrinsics than the depth images, whose lens is to be undone");
+  const auto is_lens = [](const std::optional<Distortion>& lens) { return lens && !lens->is_zero(); };
+  rays.is_bent = rays.color && (is_lens(rays.color->distortion) ||
+                                is_lens(config.distortion ? config.distortion : rays.depth.distortion));
 }
 
 Result<std::optional<MaskImage>> find_mask(const RgbdFolderConfig& config, const PinholeCamera& camera) {
@@ -312,6 +343,10 @@ Result<std::unique_ptr<RgbdFolderSource>> open_rgbd_folder(const fs::path& folde
                  folder.string()};
   }
   SACCADE_CHECK(find_intrinsics(folder, config, listing));
+  if (config.color_intrinsics) {
+    listing.color_intrinsics = config.color_intrinsics;
+    listing.T_color_depth = config.T_color_depth;
+  }
   RgbdFolderInfo info;
   info.layout = listing.layout;
   info.has_poses = listing.has_poses;

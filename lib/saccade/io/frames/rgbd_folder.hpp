@@ -69,6 +69,8 @@ inline constexpr auto kRgbdLayoutWords = make_names<RgbdLayout>({{RgbdLayout::au
 struct RgbdFolderConfig {
   RgbdLayout layout{RgbdLayout::automatic};
   std::optional<Intrinsics> intrinsics{};             ///< instead of the folder's
+  std::optional<Intrinsics> color_intrinsics{};       ///< the colour camera, where colours are not laid on the depths
+  std::optional<Pose> T_color_depth{};                ///< instead of the folder's, with color_intrinsics
   std::optional<DepthEncoding> encoding{};            ///< instead of the layout's or the files'
   std::optional<double> min_range_m{};                ///< instead of the camera's
   std::optional<double> max_range_m{};                ///< instead of the camera's

@@ -88,10 +88,14 @@ Status check_map(const TsdfSnapshot& map, const std::vector<Index3>& keys) {
   SACCADE_CHECK(map.config.validate());
   for (const Index3& key : keys) {
     if (!within_limits(key)) return Error{Errc::invalid_argument, "the map reaches too far to be saved", name_of(key)};
-    for (const BrickRef& brick : map.grid.find(key)->bricks) {
-      if (const char* fault = sacmap::fault_of(brick, map.config)) {
-        return Error{Errc::invalid_argument, std::string{"the map cannot be saved: "} + fault, name_of(key)};
-      }
+  }
+  return {};
+}
+
+Status check_sector(const Index3& key, const Sector& sector, const TsdfConfig& config) {
+  for (const BrickRef& brick : sector.bricks) {
+    if (const char* fault = sacmap::fault_of(brick, config)) {
+      return Error{Errc::invalid_argument, std::string{"the map cannot be saved: "} + fault, name_of(key)};
     }
   }
   return {};
@@ -143,15 +147,24 @@ Status write_map(const TsdfSnapshot& map, const Executor& executor, const Sink& 
   append_with_crc(header, header_of(map));
   SACCADE_CHECK(sink(header));
   std::array<Bytes, kSectorsAtOnce> records;
+  std::array<Status, kSectorsAtOnce> statuses;
+  // Sectors of a paged map come from their store and go again at once.
+  const auto encode = [&](const Index3& key, Compressor& compressor, Bytes& record) -> Status {
+    SACCADE_TRY(const SectorRef sector, map.grid.read(key));
+    SACCADE_CHECK(check_sector(key, *sector, map.config));
+    compressor.encode(key, *sector, record);
+    return {};
+  };
   for (std::size_t first = 0; first < keys.size(); first += kSectorsAtOnce) {
     const std::size_t count = std::min(kSectorsAtOnce, keys.size() - first);
     executor.parallel_for(count, kSectorsAtOnce / 8, [&](std::size_t begin, std::size_t end) {
       Compressor compressor;
-      for (std::size_t i = begin; i < end; ++i) {
-        compressor.encode(keys[first + i], *map.grid.find(keys[first + i]), records[i]);
-      }
+      for (std::size_t i = begin; i < end; ++i) statuses[i] = encode(keys[first + i], compressor, records[i]);
     });
-    for (std::size_t i = 0; i < count; ++i) SACCADE_CHECK(sink(records[i]));
+    for (std::size_t i = 0; i < count; ++i) {
+      SACCADE_CHECK(statuses[i]);
+      SACCADE_CHECK(sink(records[i]));
+    }
   }
   return {};
 }

@@ -18,6 +18,7 @@ namespace saccade {
 /// for every thread count. `path` appears only when complete.
 /// @return io_failure naming the path; invalid_argument for a map that load_map would reject (a bad configuration, a
 /// brick that is not canonical, a sector farther than 2^20 from the origin).
+/// Of a paged map, sectors are read from its store, a few at a time; errors: those of the store.
 /// O(bricks); a few compressed sectors are held in memory at a time.
 [[nodiscard]] Status save_map(const TsdfSnapshot& map, const std::filesystem::path& path,
                               const Executor& executor = {});

@@ -129,6 +129,10 @@ SelectionView view_of(const json& value) {
     if (!(fov_deg > 0.0 && fov_deg < 180.0)) problem("fov_deg is more than 0 and less than 180");
     view.clip_world = clip_of(*pose, fov_deg * 1_deg, view.width, view.height);
   }
+  if (const json* planes = keys.find("clip_planes")) {
+    if (!planes->is_array()) problem("clip_planes is a list of planes: [[a, b, c, d], ...]");
+    for (const json& plane : *planes) view.planes.emplace_back(vector_of<4>(plane, "each of clip_planes"));
+  }
   keys.finish();
   require_valid(view.validate());
   return view;
@@ -156,24 +160,38 @@ ScreenShape brush_of(const json& value, std::optional<double>& radius_m) {
   return stroke;
 }
 
+ScreenShape split_of(const json& value, std::optional<SplitPart>& part) {
+  KeyedValues keys{value, "a split"};
+  ScreenStroke stroke{line_of(keys.need("line"), "line")};
+  const json* which = keys.find("part");
+  keys.finish();
+  if (which != nullptr && *which != "smaller" && *which != "larger") problem("part is \"smaller\" or \"larger\"");
+  part = which != nullptr && *which == "larger" ? SplitPart::larger : SplitPart::smaller;
+  return stroke;
+}
+
 /// Returns the selection of a line's keys; nullopt where it has none of them.
 std::optional<ScriptedSelection> selection_of(KeyedValues& line, const std::optional<SelectionView>& view) {
   const json* rectangle = line.find("rectangle");
   const json* lasso = line.find("lasso");
   const json* polyline = line.find("polyline");
   const json* brush = line.find("brush");
+  const json* split = line.find("split");
   const json* below = line.find("below_m");
-  const int shapes = (rectangle != nullptr) + (lasso != nullptr) + (polyline != nullptr) + (brush != nullptr);
+  const int shapes =
+      (rectangle != nullptr) + (lasso != nullptr) + (polyline != nullptr) + (brush != nullptr) + (split != nullptr);
   if (shapes == 0) {
     if (below != nullptr) problem("below_m goes with a rectangle, lasso, polyline or brush");
     return std::nullopt;
   }
-  if (shapes > 1) problem("one rectangle, lasso, polyline or brush is selected with, not several");
+  if (shapes > 1) problem("one rectangle, lasso, polyline, brush or split is selected with, not several");
   if (!view) problem("a selection needs a view, in its line or in one before");
-  ScriptedSelection selection{*view, {}, kOnSurface_m, {}};
+  ScriptedSelection selection{*view, {}, kOnSurface_m, {}, {}};
   if (rectangle != nullptr) {
     const Eigen::Vector4d corners = vector_of<4>(*rectangle, "rectangle");
     selection.shape = ScreenRectangle{corners.head<2>(), corners.tail<2>()};
+  } else if (split != nullptr) {
+    selection.shape = split_of(*split, selection.split);
   } else if (brush != nullptr) {
     selection.shape = brush_of(*brush, selection.radius_m);
   } else {
@@ -182,6 +200,7 @@ std::optional<ScriptedSelection> selection_of(KeyedValues& line, const std::opti
   }
   if (below != nullptr) {
     if (selection.radius_m) problem("a brush with radius_m selects balls; below_m says nothing more");
+    if (selection.split) problem("a split cuts however deep; below_m says nothing more");
     selection.below_m = depth_of(*below);
   }
   require_valid(validate(selection.shape));
@@ -209,6 +228,10 @@ class ScriptReader {
     const json& kind = line.need("do");
     if (!kind.is_string()) problem("do is a word, such as \"set\"");
     if (const json* client = line.find("client")) action.client = whole_number_of<std::uint64_t>(*client, "client");
+    if (const json* cloud = line.find("cloud")) {
+      if (!cloud->is_string() || cloud->get<std::string>().empty()) problem("cloud is the name of a cloud's file");
+      action.cloud = cloud->get<std::string>();
+    }
     read_kind(kind.get<std::string>(), line, action);
     line.finish();
     return action;
@@ -232,8 +255,15 @@ class ScriptReader {
     } else if (kind == "paint") {
       action.change = PaintPoints{{}, whole_number_of<std::uint32_t>(line.need("label"), "label")};
       read_points(line, action, true);
+      read_segments(line, action);
     } else if (kind == "labels") {
       action.change = DefineLabels{labels_of(line.need("labels"))};
+    } else if (kind == "lock" || kind == "unlock") {
+      action.change = LockLabel{whole_number_of<std::uint32_t>(line.need("label"), "label"), kind == "lock", {}};
+    } else if (kind == "carry") {
+      action.change = PaintLabels{};
+      if (const json* spacings = line.find("spacings")) action.carry.spacings = number_of(*spacings, "spacings");
+      require_valid(action.carry.validate());
     } else if (kind == "clear") {
       action.change = ClearAnnotation{};
     } else if (kind == "undo") {
@@ -242,8 +272,15 @@ class ScriptReader {
       action.change = RedoAction{};
     } else {
       problem("unknown action " + in_quotes(kind) +
-              "; there are set, remove, move, paint, labels, clear, undo and redo");
+              "; there are set, remove, move, paint, carry, labels, lock, unlock, clear, undo and redo");
     }
+  }
+
+  static void read_segments(KeyedValues& line, ScriptedAction& action) {
+    const json* segments = line.find("segments");
+    if (segments == nullptr) return;
+    if (!segments->is_boolean()) problem("segments is true or false");
+    action.whole_segments = segments->get<bool>();
   }
 
   static void read_reach(KeyedValues& line, ScriptedAction& action) {
@@ -274,10 +311,12 @@ class ScriptReader {
       if (const json* view = line.find("view")) view_ = view_of(*view);
       action.selection = selection_of(line, view_);
     }
+    const bool splits = action.selection && action.selection->split;
+    if (splits && !std::holds_alternative<PaintPoints>(action.change)) problem("a split goes with paint");
     if (!action.points.empty() && action.selection) problem("points are named or selected, not both in one line");
     if (action.points.empty() && !action.selection) {
       problem(std::string{"say which points: points, at"} +
-              (may_select ? ", rectangle, lasso, polyline or brush" : ""));
+              (may_select ? ", rectangle, lasso, polyline, brush or split" : ""));
     }
   }
 

@@ -94,6 +94,8 @@ struct Resolver {
   [[nodiscard]] Result<Indices> selected() const {
     ScriptedSelection selection = *scripted.selection;
     selection.view.clip_world = selection.view.clip_world * Eigen::Affine3d{Eigen::Translation3d{offset_m}}.matrix();
+    for (Eigen::Vector4d& plane : selection.view.planes) plane.w() += plane.head<3>().dot(offset_m);
+    if (selection.split) return part_of(selection);
     auto chosen = selection.radius_m
                       ? select_around(positions_m, selection.view, std::get<ScreenStroke>(selection.shape).line,
                                       *selection.radius_m, executor)
@@ -104,6 +106,14 @@ struct Resolver {
     std::erase_if(*chosen, [&](std::uint32_t point) { return !annotation.control_point(point); });
     if (chosen->empty()) return at_line(scripted, "no control point is among what is selected");
     return chosen;
+  }
+
+  [[nodiscard]] Result<Indices> part_of(const ScriptedSelection& selection) const {
+    const std::uint32_t given = std::get<PaintPoints>(scripted.change).label;
+    auto split = split_label(annotation, positions_m, selection.view, std::get<ScreenStroke>(selection.shape),
+                             *selection.split, given, executor);
+    if (!split) return at_line(scripted, split.error().message);
+    return std::move(split->points);
   }
 
   [[nodiscard]] Result<Indices> named() const {
@@ -118,7 +128,38 @@ struct Resolver {
     }
     return points;
   }
+
+  /// Returns all points of the segments of `points`, without those that take no label.
+  [[nodiscard]] Result<Indices> whole_segments(const Indices& points, std::span<const std::uint32_t> segments) const {
+    if (segments.size() != positions_m.size()) return at_line(scripted, "there are no segments; --segments names them");
+    std::vector<std::uint32_t> wanted;
+    for (const std::uint32_t point : points) {
+      if (segments[point] != kNoLabel) wanted.push_back(segments[point]);
+    }
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    const Neighbourhood& graph = annotation.forest().neighbourhood();
+    Indices whole;
+    for (std::uint32_t point = 0; point < segments.size() && !wanted.empty(); ++point) {
+      if (!std::binary_search(wanted.begin(), wanted.end(), segments[point])) continue;
+      if (!graph.edges(graph.node_of(point)).empty()) whole.push_back(point);
+    }
+    if (whole.empty()) return at_line(scripted, "these points are in no segment");
+    return whole;
+  }
 };
+
+Result<PaintLabels> carried_paint(const ScriptedAction& scripted, const CarrySource* before,
+                                  std::span<const Eigen::Vector3f> positions_m, const Annotation& annotation,
+                                  const Executor& executor) {
+  if (before == nullptr) return at_line(scripted, "there is no cloud before this one to carry labels from");
+  auto carried = carry_labels(*before, positions_m, annotation, scripted.carry, executor);
+  if (!carried) return at_line(scripted, carried.error().message);
+  if (!carried->paint.points.empty()) return std::move(carried->paint);
+  return at_line(scripted, "no point takes a label: " + std::to_string(carried->kept) +
+                               " in reach have one already, and those of " + std::to_string(carried->locked) +
+                               " others are locked");
+}
 
 }  // namespace
 
@@ -134,6 +175,10 @@ Status check_script(std::span<const ScriptedAction> script, std::size_t points, 
       action.change = RemoveControlPoints{};  // stands for the check of its points
     }
     if (indices.empty()) indices.push_back(0);  // a point that every cloud has
+    if (auto* lock = std::get_if<LockLabel>(&action.change)) {
+      lock->points.resize(lock->locked ? 1 : 0);  // stands for those that have the label by then
+    }
+    if (std::holds_alternative<PaintLabels>(action.change)) action.change = PaintLabels{{0}, {1}};
     if (takes_points(action.change)) give_points(action.change, std::move(indices));
     if (const Status valid = check_action(action, points, max_path); !valid) {
       return at_line(scripted, valid.error().message);
@@ -144,11 +189,32 @@ Status check_script(std::span<const ScriptedAction> script, std::size_t points, 
 
 Result<AnnotationAction> resolve_action(const ScriptedAction& scripted, std::span<const Eigen::Vector3f> positions_m,
                                         const Annotation& annotation, std::uint64_t client, const Executor& executor,
-                                        const Eigen::Vector3d& offset_m) {
+                                        const Eigen::Vector3d& offset_m, std::span<const std::uint32_t> segments,
+                                        const CarrySource* before) {
   AnnotationAction action{scripted.client.value_or(client), scripted.change};
+  if (auto* lock = std::get_if<LockLabel>(&action.change); lock != nullptr && lock->locked) {
+    const std::span<const std::uint32_t> labels = annotation.labels();
+    for (std::uint32_t point = 0; point < labels.size(); ++point) {
+      if (labels[point] == lock->label) lock->points.push_back(point);
+    }
+    if (lock->points.empty()) return at_line(scripted, "no point has label " + std::to_string(lock->label));
+  }
+  if (auto* paint = std::get_if<PaintLabels>(&action.change)) {
+    SACCADE_TRY(*paint, carried_paint(scripted, before, positions_m, annotation, executor));
+  }
   if (!takes_points(scripted.change)) return action;
   const Resolver resolver{scripted, positions_m, annotation, executor, offset_m};
   SACCADE_TRY(Indices points, scripted.selection ? resolver.selected() : resolver.named());
+  if (scripted.whole_segments) {
+    SACCADE_TRY(points, resolver.whole_segments(points, segments));
+  }
+  if (std::holds_alternative<PaintPoints>(action.change)) {
+    const auto is_locked = [&](std::uint32_t point) {
+      return point < positions_m.size() && annotation.locked(point) != kNoLabel;
+    };
+    std::erase_if(points, is_locked);
+    if (points.empty()) return at_line(scripted, "all of these points belong to locked labels");
+  }
   give_points(action.change, std::move(points));
   return action;
 }

@@ -36,6 +36,12 @@ class BrickProjector {
         last_v_{(camera.height - 1) / SurfaceTiles::kBlockPx},
         step_{(T_camera_world_.linear() * voxel_size_m).cast<float>()} {}
 
+  /// Tells whether anything of a sector, or of the cells that begin in it, can be in the image.
+  [[nodiscard]] bool may_see_sector(const Index3& sector) const {
+    const double sector_m = kSectorVoxelEdge * voxel_size_m_;
+    return may_see(voxel_center(sector, sector_m), (0.5 * sector_m + voxel_size_m_) * std::sqrt(3.0));
+  }
+
   /// Tells whether a ball can be in the image at all.
   [[nodiscard]] bool may_see(const Eigen::Vector3d& center_world, double radius_m) const {
     const Eigen::Vector3d c = T_camera_world_ * center_world;
@@ -129,19 +135,32 @@ class BrickProjector {
 
 }  // namespace
 
+std::vector<Index3> sectors_cast_through(const TsdfGrid& grid, const PinholeCamera& camera, const Pose& T_world_camera,
+                                         double voxel_size_m) {
+  const BrickProjector projector{camera, T_world_camera, voxel_size_m};
+  const std::vector<Index3> known = grid.sorted_sectors();
+  std::vector<Index3> keys;
+  for (const Index3& key : known) {
+    if (!projector.may_see_sector(key)) continue;
+    IndexBox::cube(key, 1).grown(1).for_each([&](const Index3& near) { keys.push_back(near); });
+  }
+  std::sort(keys.begin(), keys.end(), zyx_less);
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  std::erase_if(keys, [&](const Index3& key) { return !grid.holds(key); });
+  return keys;
+}
+
 SurfaceTiles::SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, const PinholeCamera& camera,
                            const Pose& T_world_camera, double voxel_size_m, const Executor& executor)
     : width_{(camera.width + kTilePx - 1) / kTilePx}, height_{(camera.height + kTilePx - 1) / kTilePx} {
   const BrickProjector projector{camera, T_world_camera, voxel_size_m};
-  const double sector_m = kSectorVoxelEdge * voxel_size_m;
-  const double radius_m = (0.5 * sector_m + voxel_size_m) * std::sqrt(3.0);
   const double brick_m = kBrickEdge * voxel_size_m;
   const double brick_radius_m = (0.5 * brick_m + voxel_size_m) * std::sqrt(3.0);
   const std::vector<Index3> keys = grid.sorted_sectors();
   std::vector<std::vector<Footprint>> seen(keys.size());
   executor.parallel_for(keys.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      if (!projector.may_see(voxel_center(keys[s], sector_m), radius_m)) continue;
+      if (!projector.may_see_sector(keys[s])) continue;
       const Mask512 bricks = bricks_with_occupied_corner(sectors, keys[s]);
       bricks.for_each([&](std::size_t child) {
         Footprint footprint;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfaceTiles: the bricks of the mapped surface that each tile of an image can see.
+// SurfaceTiles: the bricks of the mapped surface that each tile of an image can see. sectors_cast_through: what a ray
+// cast reads.
 
 #include <cstdint>
 #include <span>
@@ -12,6 +13,11 @@
 #include "saccade/sensor/pinhole_camera.hpp"
 
 namespace saccade {
+
+/// Returns the sectors of the grid that a ray cast of this view may read, in z-y-x order: those that may be in the
+/// image, and their neighbours. O(sectors).
+[[nodiscard]] std::vector<Index3> sectors_cast_through(const TsdfGrid& grid, const PinholeCamera& camera,
+                                                       const Pose& T_world_camera, double voxel_size_m);
 
 /// Lists, for each tile of 8×8 pixels, all bricks that may hold a surface cell crossed by a ray of the tile, and some
 /// more. A cell lies between eight voxel centres and is named by its lowest corner, whose brick it belongs to. O(bricks

@@ -20,6 +20,7 @@ class VoxelSum {
     color_ += voxel.color.cast<double>();
     count_ += 1.0;
   }
+  [[nodiscard]] bool empty() const { return count_ == 0.0; }
   /// Returns the mean. `position_m` stays zero; the normal has unit length, or is zero where the sum is.
   [[nodiscard]] CloudVoxel mean() const {
     return {(place_ / count_).cast<float>(), Eigen::Vector3f::Zero(), normal_.normalized().cast<float>(),
@@ -45,6 +46,10 @@ void SupervoxelGrowth::seed(std::span<const std::uint32_t> cell_of, std::size_t 
     for (std::size_t i = begin; i < end; ++i) {
       voxels_around(candidates[i], radius, around, met);
       if (static_cast<double>(around.size()) < fewest) continue;
+      if (!seeds_settle_) {
+        chosen[i] = candidates[i];
+        continue;
+      }
       float least{0.0F};
       for (const std::uint32_t voxel : around) {
         const float here = gradient(voxel);
@@ -97,8 +102,26 @@ SupervoxelGrowth::Grown SupervoxelGrowth::grow(double steps, std::span<const std
     distances_[seed] = 0.0F;
     changed_.push_back(seed);
   }
-  for (double done = 0.0; done < steps && !changed_.empty(); done += 1.0) step();
+  for (double done = 0.0; done < steps && !changed_.empty(); done += 1.0) {
+    step();
+    if (moves_in_growth_) recenter();
+  }
   return std::move(grown_);
+}
+
+/// Moves the centres to the means of their voxels; all voxels but those that nothing reached offer their labels anew.
+void SupervoxelGrowth::recenter() {
+  std::vector<VoxelSum> sums(centres_.size());
+  changed_.clear();
+  for (std::uint32_t v = 0; v < grown_.labels.size(); ++v) {
+    if (grown_.labels[v] == kUnlabelled || distances_[v] == kOutside) continue;
+    sums[grown_.labels[v]].add(cloud_.voxels[v]);
+    changed_.push_back(v);
+    is_changed_[v] = 1;
+  }
+  for (std::size_t s = 0; s < centres_.size(); ++s) {
+    if (!sums[s].empty()) centres_[s] = sums[s].mean();
+  }
 }
 
 /// Returns the difference of normals and colours from the neighbours'.

@@ -11,18 +11,8 @@ namespace {
 
 /// Adds up the lanes of one chunk, in order.
 NormalEquations total(const PairSums& sums) {
-  const auto over_lanes = [](const std::array<float, kPairLanes>& lanes) {
-    double sum{0.0};
-    for (const float lane : lanes) sum += static_cast<double>(lane);
-    return sum;
-  };
-  NormalEquations equations;
-  std::size_t product{0};
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) equations.JtJ(j, i) = over_lanes(sums.products[product++]);
-    equations.Jtr(i) = over_lanes(sums.products[product++]);
-  }
-  equations.squared_residuals = over_lanes(sums.squared_residuals);
+  NormalEquations equations = equations_of(sums.products);
+  equations.squared_residuals = sum_of_lanes(sums.squared_residuals);
   equations.pairs = sums.pairs;
   return equations;
 }
@@ -42,6 +32,22 @@ Image<float> every(const Image<float>& from, int stride, int width, int height) 
 }
 
 }  // namespace
+
+double sum_of_lanes(const std::array<float, kPairLanes>& lanes) {
+  double sum{0.0};
+  for (const float lane : lanes) sum += static_cast<double>(lane);
+  return sum;
+}
+
+NormalEquations equations_of(const PairProducts& products) {
+  NormalEquations equations;
+  std::size_t product{0};
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) equations.JtJ(j, i) = sum_of_lanes(products[product++]);
+    equations.Jtr(i) = sum_of_lanes(products[product++]);
+  }
+  return equations;
+}
 
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   JtJ += other.JtJ;

@@ -4,6 +4,7 @@
 // projection. Level: every n-th of the measured points. For ICP and for hand-eye calibration.
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 
 #include "saccade/core/executor.hpp"
@@ -27,6 +28,11 @@ struct NormalEquations {
 
   NormalEquations& operator+=(const NormalEquations& other);
 };
+
+/// Returns the sum of the lanes of one chunk, in order.
+[[nodiscard]] double sum_of_lanes(const std::array<float, kPairLanes>& lanes);
+/// Returns JtJ and Jtr of one chunk, from the products of PairSums.
+[[nodiscard]] NormalEquations equations_of(const PairProducts& products);
 
 /// Rows of a level that are summed together; the sums of such chunks are added in order.
 constexpr std::size_t kRowsPerChunk{8};

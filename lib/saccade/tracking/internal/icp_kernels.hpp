@@ -33,11 +33,13 @@ struct PairingTask {
   float min_normal_cosine{0.0F};
 };
 
+/// w J_i J_j for i = 0 … 5, j = i … 6, in that order, lane by lane.
+using PairProducts = std::array<std::array<float, kPairLanes>, 27>;
+
 /// Sums over pairs, lane by lane. With J = (p × n, n, n·(p − q)) per pair and w its weight:
 struct PairSums {
   static constexpr int kProducts{27};
-  /// w J_i J_j for i = 0 … 5, j = i … 6, in that order.
-  alignas(64) std::array<std::array<float, kPairLanes>, kProducts> products{};
+  alignas(64) PairProducts products{};
   alignas(64) std::array<float, kPairLanes> squared_residuals{};  ///< J_6², m²
   std::size_t pairs{0};
 };

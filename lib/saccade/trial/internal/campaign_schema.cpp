@@ -100,28 +100,50 @@ ALTER TABLE views ADD COLUMN gain_observed REAL;
 )sql"};
 constexpr std::int64_t kNewestVersion{kVersions.size()};
 
-}  // namespace
+/// Header of a campaign file.
+struct Header {
+  std::int64_t version{0};
+  bool fresh{true};  ///< there is nothing in it yet
+};
 
-Status make_campaign_tables(const SqliteFile& file) {
+Error written_by(const SqliteFile& file, const char* which, std::int64_t version, const char* advice) {
+  return {Errc::unsupported,
+          std::string{"was written by "} + which + " Saccade (its format is " + std::to_string(version) +
+              ", this program knows " + std::to_string(kNewestVersion) + "); " + advice,
+          file.path().string()};
+}
+
+Result<Header> header_of(const SqliteFile& file) {
   SACCADE_TRY(const std::int64_t application, file.integer("PRAGMA application_id"));
   SACCADE_TRY(const std::int64_t version, file.integer("PRAGMA user_version"));
   SACCADE_TRY(const std::int64_t tables, file.integer("SELECT count(*) FROM sqlite_schema"));
-  const std::string where = file.path().string();
   const bool fresh = application == 0 && version == 0 && tables == 0;
   if (!fresh && (application != kApplicationId || version < 1)) {
-    return Error{Errc::invalid_argument, "is the database of another program; name another file", where};
+    return Error{Errc::invalid_argument, "is the database of another program; name another file", file.path().string()};
   }
-  if (version > kNewestVersion) {
-    return Error{Errc::unsupported,
-                 "was written by a newer Saccade (its format is " + std::to_string(version) + ", this program knows " +
-                     std::to_string(kNewestVersion) + "); use that one, or another file",
-                 where};
-  }
-  for (std::int64_t next = version; next < kNewestVersion; ++next) {
+  if (version > kNewestVersion) return written_by(file, "a newer", version, "use that one, or another file");
+  return Header{version, fresh};
+}
+
+}  // namespace
+
+Status make_campaign_tables(const SqliteFile& file) {
+  SACCADE_TRY(const Header header, header_of(file));
+  for (std::int64_t next = header.version; next < kNewestVersion; ++next) {
     SACCADE_CHECK(file.run(kVersions[static_cast<std::size_t>(next)]));
   }
-  if (fresh) SACCADE_CHECK(file.run("PRAGMA application_id = " + std::to_string(kApplicationId)));
+  if (header.fresh) SACCADE_CHECK(file.run("PRAGMA application_id = " + std::to_string(kApplicationId)));
   return file.run("PRAGMA user_version = " + std::to_string(kNewestVersion));
+}
+
+Result<bool> has_campaign_tables(const SqliteFile& file) {
+  SACCADE_TRY(const Header header, header_of(file));
+  if (header.fresh) return false;
+  if (header.version < kNewestVersion) {
+    return written_by(file, "an older", header.version,
+                      "run saccade compare on its folder once, which brings it up to date");
+  }
+  return true;
 }
 
 }  // namespace saccade

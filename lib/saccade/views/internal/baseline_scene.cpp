@@ -48,9 +48,9 @@ Result<BaselineScene> read_baseline_scene(const PlanningContext& context, const 
   if (!objects.seen.empty()) {
     const auto margin_vox = static_cast<std::int32_t>(std::lround(object_margin_m / voxel_m));
     IndexBox around = box_around(scene.volume, objects.seen).grown(margin_vox);
-    around.lo.z += std::max(margin_vox - kBelow_vox, 0);
+    scene.on_support = !supports.empty();
+    if (scene.on_support) around.lo.z += std::max(margin_vox - kBelow_vox, 0);
     scene.counted = around.intersection(box);
-    scene.on_support = true;
   }
   return scene;
 }

@@ -16,7 +16,7 @@ struct BaselineScene {
   StateVolume volume;
   IndexBox counted;        ///< box of counted voxels; empty: none
   Region bounds;           ///< region that must contain the centre of a counted voxel
-  bool on_support{false};  ///< objects were seen: cameras must stay above their support
+  bool on_support{false};  ///< objects were seen that stand on something: cameras stay above it
 
   [[nodiscard]] bool counts(const Index3& voxel) const {
     return counted.contains(voxel) && contains(bounds, voxel_center(voxel, volume.voxel_size_m()));

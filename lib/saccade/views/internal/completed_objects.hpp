@@ -9,27 +9,10 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/views/internal/find_supports.hpp"
 #include "saccade/views/internal/state_volume.hpp"
+#include "saccade/views/internal/voxel_role.hpp"
 #include "saccade/views/supports.hpp"
 
 namespace saccade {
-
-/// Role of a voxel in the completion.
-struct VoxelRole {
-  /// Bits 0 and 1: state of this voxel as seen by an unknown neighbour.
-  enum Opening : std::uint8_t { closed = 0, unknown = 1, empty = 2, openings = 3 };
-  /// Bits 2 and 3: relation of the voxel to an object. Where hulls overlap, the larger value holds.
-  enum Reach : std::uint8_t {
-    outside = 0,
-    below = 4,    ///< up to two voxels below an object, in its support
-    carved = 8,   ///< in an object's hull, but empty at its mirrored place
-    inside = 12,  ///< in an object's hull
-  };
-  std::uint8_t bits{0};
-  [[nodiscard]] std::uint8_t reach() const { return bits & inside; }
-  [[nodiscard]] std::uint8_t opening() const { return bits & openings; }
-  /// Tells whether the voxel is known to be empty and in an object's hull.
-  [[nodiscard]] bool is_empty_inside() const { return bits == (+inside | +empty); }
-};
 
 /// Supports and walls of the objects.
 struct Surroundings {
@@ -69,12 +52,13 @@ class DistanceToObjects {
   /// O(cells · reach); the thread count never changes a bit.
   DistanceToObjects(const StateVolume& volume, std::span<const std::uint32_t> seen, double reach_m,
                     const Executor& executor);
-  /// Returns the distance of a voxel, given by its coordinates in the volume; infinity beyond the reach.
-  [[nodiscard]] float at_m(std::int32_t x, std::int32_t y, std::int32_t z) const {
-    const std::uint16_t squared = squared_[static_cast<std::size_t>(z / 2) * layer_ +
-                                           static_cast<std::size_t>(y / 2) * row_ + static_cast<std::size_t>(x / 2)];
-    return metres_[squared];
-  }
+  /// Returns the squared distance of each cell, in cells; x fastest.
+  [[nodiscard]] std::span<const std::uint16_t> squared() const { return squared_; }
+  /// Strides of the cells along y and z.
+  [[nodiscard]] std::size_t row() const { return row_; }
+  [[nodiscard]] std::size_t layer() const { return layer_; }
+  /// Returns the distance by squared distance; infinity beyond the reach.
+  [[nodiscard]] std::span<const float> metres() const { return metres_; }
 
  private:
   std::size_t row_{0};

@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
-#include <utility>
 
 namespace saccade {
 namespace {
@@ -48,7 +45,7 @@ void for_rows(const BrickRef& brick, const Index3& corner, const IndexBox& box, 
 
 }  // namespace
 
-Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor) {
+Result<StateVolume> StateVolume::unknown(const TsdfSnapshot& map, const IndexBox& box) {
   StateVolume volume;
   volume.voxel_size_m_ = map.config.voxel_size_m;
   if (box.empty()) return volume;
@@ -61,6 +58,20 @@ Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& b
   volume.layer_ = volume.row_ * box.size().y;
   volume.states_.assign(static_cast<std::size_t>(volume.layer_) * static_cast<std::size_t>(box.size().z),
                         VoxelState::unknown);
+  return volume;
+}
+
+Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& box, SurfaceDevice& device) {
+  SACCADE_TRY(StateVolume volume, unknown(map, box));
+  if (volume.size() > 0) {
+    SACCADE_TRY(volume.ticket_, device.read_states(volume.box_, volume.states_));
+  }
+  return volume;
+}
+
+Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor) {
+  SACCADE_TRY(StateVolume volume, unknown(map, box));
+  if (volume.size() == 0) return volume;
   const SectorTable sectors{map.grid};
   const IndexBox bricks = parents(box);
   executor.parallel_for(static_cast<std::size_t>(bricks.size().z), 1, [&](std::size_t begin, std::size_t) {
@@ -88,37 +99,16 @@ Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& b
   return volume;
 }
 
+StateBox StateVolume::state_box() const {
+  static_assert(static_cast<std::uint8_t>(VoxelState::unknown) == StateBox::kUnknown &&
+                static_cast<std::uint8_t>(VoxelState::empty) == StateBox::kEmpty &&
+                static_cast<std::uint8_t>(VoxelState::occupied) == StateBox::kOccupied);
+  return {box_.lo, box_.size(), voxel_size_m_, reinterpret_cast<const std::uint8_t*>(states_.data())};
+}
+
 bool StateVolume::is_visible(std::size_t voxel, const Eigen::Vector3d& camera_m, double through_m) const {
-  const Index3 start = this->voxel(voxel);
-  const Eigen::Vector3d step_m = camera_m - voxel_center(start, voxel_size_m_);
-  const double length_m = step_m.norm();
-  const float through = length_m > 0.0 ? static_cast<float>(through_m / length_m) : 1.0F;
-  const std::array<std::int32_t, 3> at{start.x, start.y, start.z};
-  const std::array<std::int32_t, 3> lo{box_.lo.x, box_.lo.y, box_.lo.z};
-  const std::array<std::int32_t, 3> hi{box_.hi.x, box_.hi.y, box_.hi.z};
-  const std::array<std::ptrdiff_t, 3> stride{1, row_, layer_};
-  std::array<float, 3> next;  // share of the line at which the next plane across each axis is passed
-  std::array<float, 3> between;
-  std::array<std::ptrdiff_t, 3> move;
-  std::array<std::int32_t, 3> left;  // voxels to the border
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double step = step_m[static_cast<Eigen::Index>(axis)] / voxel_size_m_;
-    between[axis] = step == 0.0 ? std::numeric_limits<float>::infinity() : static_cast<float>(1.0 / std::abs(step));
-    next[axis] = 0.5F * between[axis];
-    move[axis] = step > 0.0 ? stride[axis] : -stride[axis];
-    left[axis] = step > 0.0 ? hi[axis] - 1 - at[axis] : at[axis] - lo[axis];
-  }
-  std::ptrdiff_t index = static_cast<std::ptrdiff_t>(voxel);
-  for (;;) {
-    const std::size_t axis =
-        next[0] <= next[1] ? (next[0] <= next[2] ? std::size_t{0} : 2) : (next[1] <= next[2] ? std::size_t{1} : 2);
-    const float t = next[axis];
-    if (t >= 1.0F || left[axis]-- == 0) return true;
-    next[axis] += between[axis];
-    index += move[axis];
-    const VoxelState state = states_[static_cast<std::size_t>(index)];
-    if (state != VoxelState::empty && (state == VoxelState::occupied || t > through)) return false;
-  }
+  return is_in_sight(state_box(), static_cast<std::int64_t>(voxel), {camera_m.x(), camera_m.y(), camera_m.z()},
+                     through_m);
 }
 
 }  // namespace saccade

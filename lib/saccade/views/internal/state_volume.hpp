@@ -9,6 +9,8 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/views/internal/line_of_sight.hpp"
+#include "saccade/views/surface_device.hpp"
 
 namespace saccade {
 
@@ -22,6 +24,8 @@ class StateVolume {
   /// @return invalid_argument for a box of more than kMostVoxels. O(voxels of the box).
   [[nodiscard]] static Result<StateVolume> read(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor);
   static constexpr double kMostVoxels{536'870'912.0};
+  /// Reads a box of the map that a device follows. Errors: those of read(), and of the device.
+  [[nodiscard]] static Result<StateVolume> read(const TsdfSnapshot& map, const IndexBox& box, SurfaceDevice& device);
 
   [[nodiscard]] const IndexBox& box() const { return box_; }
   [[nodiscard]] double voxel_size_m() const { return voxel_size_m_; }
@@ -43,6 +47,10 @@ class StateVolume {
   /// Returns the states by index().
   [[nodiscard]] const VoxelState* data() const { return states_.data(); }
   [[nodiscard]] VoxelState operator[](std::size_t index) const { return states_[index]; }
+  /// Returns the volume as kernels see it. It borrows the states.
+  [[nodiscard]] StateBox state_box() const;
+  /// Returns the ticket of the device that the states came from; 0: they came from none.
+  [[nodiscard]] std::uint64_t ticket() const { return ticket_; }
 
   /// Tells whether nothing hides a voxel of the box from a camera: the straight line from its centre to the camera's
   /// passes only empty voxels; over the first through_m also unknown ones. The voxel itself does not count. O(voxels
@@ -50,10 +58,14 @@ class StateVolume {
   [[nodiscard]] bool is_visible(std::size_t voxel, const Eigen::Vector3d& camera_m, double through_m) const;
 
  private:
+  /// Makes a box of unknown voxels.
+  [[nodiscard]] static Result<StateVolume> unknown(const TsdfSnapshot& map, const IndexBox& box);
+
   IndexBox box_{};
   double voxel_size_m_{1.0};
   std::ptrdiff_t row_{0};
   std::ptrdiff_t layer_{0};
+  std::uint64_t ticket_{0};
   std::vector<VoxelState> states_;
 };
 

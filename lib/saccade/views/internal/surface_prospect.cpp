@@ -6,6 +6,7 @@
 
 #include "saccade/attention/salient_objects.hpp"
 #include "saccade/views/internal/state_volume.hpp"
+#include "saccade/views/surface_device.hpp"
 
 namespace saccade {
 namespace {
@@ -29,8 +30,9 @@ std::vector<double> saliency_near(std::span<const Eigen::Vector3d> places_m, con
 
 Result<SurfaceProspect> SurfaceProspect::create(const PlanningContext& context, const RegionOfInterest& region,
                                                 std::shared_ptr<const ExpectedSurface> surface,
-                                                const PinholeCamera& sensor, double doubtful_share) {
-  SurfaceProspect prospect{std::move(surface), sensor};
+                                                std::shared_ptr<const LinesOfSight> sight, const PinholeCamera& sensor,
+                                                double doubtful_share) {
+  SurfaceProspect prospect{std::move(surface), std::move(sight), sensor};
   prospect.doubtful_share_ = doubtful_share;
   const std::vector<ExpectedPoint>& points = prospect.surface_->points;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -91,15 +93,13 @@ void SurfaceProspect::for_each_in_picture(std::span<const TileVisibility> sights
   }
 }
 
-double SurfaceProspect::in_sight(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
-  const StateVolume& volume = *surface_->volume;
-  if (volume.is_visible(point.voxel, camera_m, surface_->config.through_m)) return 1.0;
-  return doubtful_share_ > 0.0 && volume.is_visible(point.voxel, camera_m, kThroughAll_m) ? doubtful_share_ : 0.0;
+double SurfaceProspect::in_sight(const ExpectedPoint& point, const Outlook& outlook) const {
+  if (outlook.sees(point, surface_->config.through_m)) return 1.0;
+  return doubtful_share_ > 0.0 && outlook.sees(point, kThroughAll_m) ? doubtful_share_ : 0.0;
 }
 
-std::vector<SurfaceProspect::TileVisibility> SurfaceProspect::visible(std::span<const Pose> T_world_camera) const {
-  const Eigen::Vector3d camera_m = T_world_camera.front().translation();
-  std::vector<TileVisibility> sights = facing(camera_m);
+std::vector<SurfaceProspect::TileVisibility> SurfaceProspect::in_pictures(std::span<const Pose> T_world_camera) const {
+  std::vector<TileVisibility> sights = facing(T_world_camera.front().translation());
   std::vector<std::uint8_t> in_a_picture(sights.size(), 0);
   for (const Pose& pose : T_world_camera) {
     for_each_in_picture(sights, pose, [&](const TileVisibility& sight, const Eigen::Vector3f&) {
@@ -108,17 +108,87 @@ std::vector<SurfaceProspect::TileVisibility> SurfaceProspect::visible(std::span<
   }
   std::size_t count{0};
   for (std::size_t i = 0; i < sights.size(); ++i) {
+    if (in_a_picture[i] != 0) sights[count++] = sights[i];
+  }
+  sights.resize(count);
+  return sights;
+}
+
+void SurfaceProspect::keep_visible(std::vector<TileVisibility>& sights, std::span<const double> shares,
+                                   const Eigen::Vector3d& camera_m) const {
+  std::size_t count{0};
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    if (shares[i] == 0.0) continue;
     TileVisibility sight = sights[i];
-    if (in_a_picture[i] == 0) continue;
-    const double share = in_sight(*sight.point, camera_m);
-    if (share == 0.0) continue;
-    sight.area_cm2 *= share;
+    sight.area_cm2 *= shares[i];
     if (!in_sight_.empty()) {
       sight.area_cm2 *= credit_->of(sight.point->position_m.cast<double>(), in_sight_[sight.number], camera_m);
     }
     sights[count++] = sight;
   }
   sights.resize(count);
+}
+
+std::vector<SurfaceProspect::TileVisibility> SurfaceProspect::visible(std::span<const Pose> T_world_camera) const {
+  const Eigen::Vector3d camera_m = T_world_camera.front().translation();
+  std::vector<TileVisibility> sights = in_pictures(T_world_camera);
+  if (sights.empty()) return {};
+  std::vector<const ExpectedPoint*> points;
+  for (const TileVisibility& sight : sights) points.push_back(sight.point);
+  const std::unique_ptr<const Outlook> outlook = sight_->from(camera_m, points);
+  std::vector<double> shares(sights.size());
+  std::transform(sights.begin(), sights.end(), shares.begin(),
+                 [&](const TileVisibility& sight) { return in_sight(*sight.point, *outlook); });
+  keep_visible(sights, shares, camera_m);
+  return sights;
+}
+
+Result<std::vector<double>> SurfaceProspect::shares_on(SurfaceDevice& device,
+                                                       std::span<const std::vector<TileVisibility>> sights,
+                                                       std::span<const Eigen::Vector3d> cameras_m) const {
+  std::vector<LineOfSight> lines;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    for (const TileVisibility& sight : sights[i]) lines.push_back({sight.point->voxel, static_cast<std::uint32_t>(i)});
+  }
+  const std::uint64_t ticket = surface_->volume->ticket();
+  SACCADE_TRY(const std::vector<std::uint8_t> clear,
+              device.in_sight(ticket, lines, cameras_m, surface_->config.through_m));
+  std::vector<double> shares(clear.begin(), clear.end());
+  if (doubtful_share_ == 0.0) return shares;
+  std::vector<std::size_t> hidden;
+  for (std::size_t i = 0; i < clear.size(); ++i) {
+    if (clear[i] != 0) continue;
+    lines[hidden.size()] = lines[i];
+    hidden.push_back(i);
+  }
+  lines.resize(hidden.size());
+  SACCADE_TRY(const std::vector<std::uint8_t> doubtful, device.in_sight(ticket, lines, cameras_m, kThroughAll_m));
+  for (std::size_t i = 0; i < hidden.size(); ++i) shares[hidden[i]] = doubtful[i] != 0 ? doubtful_share_ : 0.0;
+  return shares;
+}
+
+std::vector<std::vector<SurfaceProspect::TileVisibility>> SurfaceProspect::visible(
+    std::span<const std::span<const Pose>> places, const Executor& executor, SurfaceDevice* device) const {
+  std::vector<std::vector<TileVisibility>> sights(places.size());
+  const auto for_each_place = [&](const auto& visit) {
+    executor.parallel_for(places.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) visit(i);
+    });
+  };
+  if (device != nullptr && surface_->volume->ticket() != 0) {
+    std::vector<Eigen::Vector3d> cameras_m;
+    for (const std::span<const Pose> place : places) cameras_m.emplace_back(place.front().translation());
+    for_each_place([&](std::size_t i) { sights[i] = in_pictures(places[i]); });
+    if (const Result<std::vector<double>> shares = shares_on(*device, sights, cameras_m); shares.ok()) {
+      std::vector<std::size_t> first{0};
+      for (const std::vector<TileVisibility>& of_place : sights) first.push_back(first.back() + of_place.size());
+      for_each_place([&](std::size_t i) {
+        keep_visible(sights[i], std::span{shares.value()}.subspan(first[i], sights[i].size()), cameras_m[i]);
+      });
+      return sights;
+    }
+  }
+  for_each_place([&](std::size_t i) { sights[i] = visible(places[i]); });
   return sights;
 }
 

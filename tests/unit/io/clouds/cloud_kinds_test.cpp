@@ -84,6 +84,17 @@ TEST(NpyClouds, RecordsKeepTheirFields) {
   EXPECT_EQ(read_as(folder, "n.npy", npy("[('a', '<f4')]", "(1,)", false, "1234")).error().code, Errc::corrupt_data);
 }
 
+TEST(NpyClouds, NamesOfFieldsThatNoTableMayHaveAreChanged) {
+  const test::TempFolder folder;
+  const std::string type = "[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('GPS time', '<f4'), ('', '<f4')]";
+  const auto cloud =
+      read_as(folder, "c.npy", npy(type, "(1,)", false, bytes_of_values(std::vector<float>{1, 2, 3, 4, 5})));
+  ASSERT_TRUE(cloud) << cloud.error().to_string();
+  EXPECT_TRUE(cloud->fields().validate());
+  EXPECT_EQ(cloud->fields().find("GPS_time")->value(0), 4.0);
+  EXPECT_EQ(cloud->fields().find("field5")->value(0), 5.0);
+}
+
 TEST(NpyClouds, OtherArraysAreErrorsThatSayWhatToDo) {
   const test::TempFolder folder;
   const std::string wide = bytes_of_values(std::vector<float>(3 * 2000));

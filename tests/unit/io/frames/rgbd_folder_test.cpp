@@ -299,6 +299,27 @@ TEST(RgbdFolder, ReadsTum) {
   EXPECT_NE(outcomes(folder.path()).front().find("line 1"), std::string::npos);
 }
 
+TEST(RgbdFolder, LaysColorsOfAnotherCameraOnTheDepths) {
+  const TempFolder folder;
+  folder.write("camera-intrinsics.txt", kIntrinsics);
+  ASSERT_TRUE(write_png16(folder / "frame-000000.depth.png", depth_image(1000)));
+  ColorImage columns{kWidth, kHeight};
+  for (int v = 0; v < kHeight; ++v) {
+    for (int u = 0; u < kWidth; ++u) columns(u, v) = {static_cast<std::uint8_t>(10 * u + 10), 0, 0};
+  }
+  ASSERT_TRUE(write_png(folder / "frame-000000.color.png", columns));
+  RgbdFolderConfig config;
+  config.color_intrinsics = Intrinsics{10, 10, 3.5, 2.5, {}, {}, {}, {}, {}};
+  config.T_color_depth = Pose{Eigen::Translation3d{-0.2, 0, 0}};  // 20 cm to the right: 2 pixels at 1 m
+  auto source = open_rgbd_folder(folder.path(), config);
+  ASSERT_TRUE(source) << source.error().to_string();
+  const Frame frame = std::move(**(*source)->next());
+  ASSERT_TRUE(frame.color && frame.color->width() == kWidth);
+  for (int u = 0; u < kWidth; ++u) {
+    EXPECT_EQ((*frame.color)(u, 3)[0], u < 2 ? 0 : 10 * (u - 2) + 10) << u;
+  }
+}
+
 TEST(RgbdFolder, ReadsPrinceton) {
   const TempFolder folder;
   constexpr DepthEncoding kEncoding{10000.0, true};

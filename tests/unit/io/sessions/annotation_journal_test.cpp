@@ -37,7 +37,9 @@ std::vector<AnnotationAction> actions_of_every_kind() {
           {2, DefineLabels{{{4, {"cup", {1, 2, 255}, "tableware", 3}}, {kMaxLabel, {}}}}},
           {3, ClearAnnotation{}},
           {3, UndoAction{}},
-          {3, RedoAction{}}};
+          {3, RedoAction{}},
+          {2, LockLabel{4, true, {3, 5}}},
+          {1, PaintLabels{{0, 7, 999}, {5, 6, 5}}}};
 }
 
 Bytes joined(const std::vector<Bytes>& parts) {

@@ -321,7 +321,8 @@ class LongAndShortActions {
     std::vector<std::uint32_t> all(annotation.labels().size() - 1);
     std::iota(all.begin(), all.end(), 0U);
     const auto label = static_cast<std::uint32_t>(annotation.history().size() % 7);
-    return {1, PaintPoints{std::move(all), label}};
+    AnnotationAction paint{1, PaintPoints{std::move(all), label}};
+    return annotation.validate(paint) ? paint : random_.next(annotation);  // a label may be locked
   }
 
  private:

@@ -19,6 +19,7 @@
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/frames/depth_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/internal/azure_kinect.hpp"
 #include "saccade/io/frames/internal/calibration.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/sessions/annotation_session.hpp"
@@ -85,6 +86,7 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
   EXPECT_GE(check_seeds("calibration",
                         [](const std::string& content, const std::string& name) {
                           if (name == "info.txt") return parse_sensor_info(content).ok();
+                          if (name == "azure_kinect.json") return parse_azure_kinect_calibration(content).ok();
                           if (name.ends_with(".json")) return parse_bop_cameras(content).ok();
                           return parse_opencv_camera(content).ok() && parse_local_transform(content)->has_value();
                         }),

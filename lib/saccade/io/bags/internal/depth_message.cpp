@@ -185,16 +185,16 @@ Result<Intrinsics> read_camera_info(const BagMessage& message, bool is_rectified
   intrinsics.fy /= n_y;
   const auto is_zero = [](double d) { return d == 0.0; };
   if (uses_p || std::ranges::all_of(info.d, is_zero)) return intrinsics;
-  const bool is_plumb_bob = info.distortion_model == "plumb_bob" || info.distortion_model == "rational_polynomial" ||
-                            info.distortion_model.empty();
-  if (!is_plumb_bob || info.d.size() < 4 ||
-      (info.d.size() > 5 && !std::all_of(info.d.begin() + 5, info.d.end(), is_zero))) {
+  const bool is_brown_conrady = info.distortion_model == "plumb_bob" ||
+                                info.distortion_model == "rational_polynomial" || info.distortion_model.empty();
+  const auto lens = Distortion::from_coefficients(info.d);
+  if (!is_brown_conrady || info.d.size() < 4 || !lens) {
     return Error{Errc::unsupported,
                  "the lens model \"" + info.distortion_model.substr(0, 40) +
                      "\" is not undone here; use rectified images, or say --intrinsics and --distortion",
                  {}};
   }
-  intrinsics.distortion = Distortion{info.d[0], info.d[1], info.d[2], info.d[3], info.d.size() > 4 ? info.d[4] : 0.0};
+  intrinsics.distortion = *lens;
   return intrinsics;
 }
 

@@ -1,12 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/clouds/internal/npy_cloud.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "saccade/io/clouds/internal/unnamed_columns.hpp"
 #include "saccade/io/files/npy_io.hpp"
 
 namespace saccade {
+namespace {
+
+/// Replaces what no table may have in a name: blanks and control characters become '_', an empty name the field's
+/// number.
+void clean_names(ColumnTable& table) {
+  constexpr unsigned char kDelete{0x7F};
+  const auto bad = [](unsigned char c) { return c <= ' ' || c == kDelete; };
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    std::string& name = table.columns[k].name;
+    std::replace_if(name.begin(), name.end(), bad, '_');
+    if (name.empty()) name = "field" + std::to_string(k + 1);
+  }
+}
+
+}  // namespace
 
 Result<ColumnTable> parse_npy_cloud(std::span<const std::byte> file) {
   SACCADE_TRY(ColumnTable table, parse_npy_table(file));
@@ -16,6 +32,7 @@ Result<ColumnTable> parse_npy_cloud(std::span<const std::byte> file) {
         return Error{Errc::corrupt_data, std::string{"the records have no field "} + name, {}};
       }
     }
+    clean_names(table);
     return table;
   }
   if (table.columns.size() < 3) {

@@ -51,13 +51,9 @@ Numbers matrix_numbers(const YAML::Node& node, std::size_t count) {
 }
 
 Result<Distortion> lens_of(const Numbers& k) {
-  for (std::size_t i = 5; i < k.size(); ++i) {
-    if (k[i] != 0.0) {
-      return Error{Errc::unsupported, "a lens model of more than k1 k2 p1 p2 k3; write the images undistorted", {}};
-    }
-  }
-  const auto at = [&](std::size_t i) { return i < k.size() ? k[i] : 0.0; };
-  return Distortion{at(0), at(1), at(2), at(3), at(4)};
+  if (const auto lens = Distortion::from_coefficients(k)) return *lens;
+  return Error{
+      Errc::unsupported, "a lens model of more than k1 k2 p1 p2 k3 k4 k5 k6; write the images undistorted", {}};
 }
 
 Result<Intrinsics> opencv_intrinsics(const YAML::Node& node) {

@@ -15,8 +15,8 @@
 
 namespace saccade {
 
-/// Parses YAML that OpenCV writes: camera_matrix, and where they are there distortion_coefficients (up to five, plumb
-/// bob), image_width, image_height. Answers corrupt_data with the line; unsupported for other lens models.
+/// Parses YAML that OpenCV writes: camera_matrix, and where they are there distortion_coefficients (up to eight),
+/// image_width, image_height. Answers corrupt_data with the line; unsupported for other lens models.
 [[nodiscard]] Result<Intrinsics> parse_opencv_camera(std::string_view text);
 /// Returns local_transform of RTAB-Map's YAML, the camera on its robot, where it is there.
 [[nodiscard]] Result<std::optional<Pose>> parse_local_transform(std::string_view text);

@@ -8,21 +8,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a file with intrinsics that any layout may have.
-std::optional<fs::path> intrinsics_file(const fs::path& folder) {
-  const fs::path above = fs::absolute(folder / "x").parent_path().lexically_normal().parent_path();
-  for (const fs::path& place : {folder, above}) {
-    for (const char* name : {"camera-intrinsics.txt", "intrinsics.K.txt", "intrinsics.txt", "camera.json",
-                             "camera_primesense.json", "intrinsic.json", "camera_intrinsic.json", "intrinsics.json",
-                             "camera_intrinsics.json", "camera_intrinsics.txt", "cam_params.json"}) {
-      std::error_code ignored;
-      if (fs::is_regular_file(place / name, ignored)) return place / name;
-    }
+/// Returns the file with intrinsics in a folder that any layout may have.
+std::optional<fs::path> intrinsics_file_in(const fs::path& folder) {
+  for (const char* name : {"camera-intrinsics.txt", "intrinsics.K.txt", "intrinsics.txt", "camera.json",
+                           "camera_primesense.json", "intrinsic.json", "camera_intrinsic.json", "intrinsics.json",
+                           "camera_intrinsics.json", "camera_intrinsics.txt", "cam_params.json"}) {
+    std::error_code ignored;
+    if (fs::is_regular_file(folder / name, ignored)) return folder / name;
   }
   return std::nullopt;
 }
 
+/// Returns such a file in the folder or the one above it.
+std::optional<fs::path> intrinsics_file(const fs::path& folder) {
+  if (auto file = intrinsics_file_in(folder)) return file;
+  return intrinsics_file_in(fs::absolute(folder / "x").parent_path().lexically_normal().parent_path());
+}
+
 }  // namespace
+
+bool has_intrinsics_file(const fs::path& folder) { return intrinsics_file_in(folder).has_value(); }
 
 Status find_intrinsics(const fs::path& folder, const RgbdFolderConfig& config, RgbdListing& listing) {
   if (config.intrinsics) {

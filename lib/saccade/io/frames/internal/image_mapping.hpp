@@ -40,8 +40,9 @@ template <class T>
   return seen;
 }
 
-/// Returns the colour of each depth pixel, from a colour camera in another place; black without depth or outside of the
-/// colour image. What hides a point from the colour camera is not looked for.
+/// Returns the colour of each depth pixel, from a colour camera in another place whose lens may bend rays; black
+/// without depth or outside of the colour image. Depths are those of an ideal lens. What hides a point from the colour
+/// camera is not looked for.
 [[nodiscard]] ColorImage seen_from_depth(const ColorImage& color, const Intrinsics& of_color, const DepthImage& depth,
                                          const Intrinsics& of_depth, const Pose& T_color_depth);
 
@@ -85,6 +86,7 @@ struct ImageRays {
   std::optional<Intrinsics> color{};  ///< where colours have other rays than depths
   std::optional<Pose> T_color_depth{};
   bool are_color{false};  ///< intrinsics of single images are those of their colours
+  bool is_bent{false};    ///< colours have other rays than depths, and one of the two has a lens to undo
 
   /// Returns the intrinsics of one depth image by those in its own file. Answers size_mismatch where they are for
   /// another size.

@@ -249,25 +249,6 @@ Status complete_scannet(const fs::path& folder, const RgbdLayoutRule& /*rule*/, 
   return {};
 }
 
-Status complete_rtabmap(const fs::path& folder, const RgbdLayoutRule& rule, const RgbdFolderConfig& /*config*/,
-                        RgbdListing& listing) {
-  const FilesByFrame calibrations{find_first(folder, rule.intrinsics)};
-  for (RgbdFrameFiles& frame : listing.frames) {
-    const fs::path* path = calibrations.find(frame.name);
-    if (path == nullptr) {
-      frame.intrinsics = Error{Errc::not_found, "its calibration, calib/" + frame.name + ".yaml, is missing", {}};
-      continue;
-    }
-    const auto text = read_text_file(*path);
-    frame.intrinsics = text ? in_file(parse_opencv_camera(*text), *path) : Result<Intrinsics>{text.error()};
-    if (!text || listing.T_base_camera) continue;
-    SACCADE_TRY(listing.T_base_camera, in_file(parse_local_transform(*text), *path));
-    listing.intrinsics_from = path->string();
-  }
-  listing.intrinsics_are_color = true;
-  return {};
-}
-
 Status complete_tum(const fs::path& folder, const RgbdLayoutRule& /*rule*/, const RgbdFolderConfig& config,
                     RgbdListing& listing) {
   SACCADE_TRY(const auto depths, read_stamped_paths(folder / "depth.txt"));

@@ -120,23 +120,6 @@ std::optional<PoseIndices> match(const RgbdListing& listing, const std::vector<P
   return by_count(frames, poses);
 }
 
-/// Turns poses of RTAB-Map's robot into those of its camera. Only poses with an id are surely the robot's; a file named
-/// after the camera has the camera's.
-Status move_to_camera(const RgbdListing& listing, const fs::path& path, std::vector<PoseEntry>& poses) {
-  const bool is_same = !listing.T_base_camera || listing.T_base_camera->isApprox(Pose::Identity(), 1e-6);
-  if (is_same || path.filename().string().find("camera") != std::string::npos) return {};
-  if (!poses.front().id) {
-    return Error{Errc::unsupported,
-                 "does not say whether its poses are the robot's or the camera's, which calib/ tells apart; export "
-                 "them by rtabmap-export --poses_camera, or pass --poses FILE with the camera's",
-                 path.string()};
-  }
-  for (PoseEntry& entry : poses) {
-    if (entry.T_world_camera) entry.T_world_camera = *entry.T_world_camera * *listing.T_base_camera;
-  }
-  return {};
-}
-
 void note_leftovers(RgbdListing& listing, const PoseIndices& indices, std::size_t poses, const fs::path& path) {
   std::vector<bool> used(poses);
   std::size_t without = 0;
@@ -166,8 +149,11 @@ std::string counted(std::size_t count, std::string_view one, std::string_view ma
 Status attach_pose_file(RgbdListing& listing, const fs::path& path, const RgbdFolderConfig& config) {
   SACCADE_TRY(std::vector<PoseEntry> poses, read_pose_list(path));
   if (poses.empty()) return Error{Errc::not_found, "holds no pose", path.string()};
-  if (!config.poses_file) SACCADE_CHECK(move_to_camera(listing, path, poses));
   if (listing.frames.empty()) return {};
+  bool are_robots = false;
+  if (!config.poses_file || listing.frames.front().strip) {
+    SACCADE_TRY(are_robots, are_poses_of_robot(listing, path, poses.front().id.has_value()));
+  }
   const auto indices = match(listing, poses, config.max_time_difference_s);
   if (!indices) {
     return Error{
@@ -182,6 +168,10 @@ Status attach_pose_file(RgbdListing& listing, const fs::path& path, const RgbdFo
     frame.pose_file.reset();
     frame.T_world_camera.reset();
     if ((*indices)[i]) frame.T_world_camera = poses[*(*indices)[i]].T_world_camera;
+    const bool has_pose = frame.T_world_camera && *frame.T_world_camera;
+    if (are_robots && has_pose && frame.T_base_camera) {
+      frame.T_world_camera = **frame.T_world_camera * *frame.T_base_camera;
+    }
   }
   note_leftovers(listing, *indices, poses.size(), path);
   listing.has_poses = true;

@@ -94,7 +94,8 @@ const std::vector<RgbdLayoutRule>& layout_rules() {
        .color = {"color/#.*", "rgb/#.*", "image/#.*", "images/#.*", "colors/#.*"},
        .pose_each = {"pose/#.txt", "poses/#.txt"},
        .pose_list = {"trajectory.log", "trajectory.txt", "traj.txt", "traj_w_c.txt", "poses.txt", "groundtruth.txt"},
-       .encoding = kMillimetres},
+       .encoding = kMillimetres,
+       .complete = complete_open3d},
       {.layout = RgbdLayout::seven_scenes,
        .title = "7-Scenes",
        .marks = {{"#.depth.*"}},
@@ -142,7 +143,9 @@ struct PackedRecording {
 constexpr std::array<PackedRecording, 6> kPackedRecordings{
     {{"*.sens", "is packed; unpack it with the reader that ScanNet offers"},
      {"*.db", "is a database, perhaps of RTAB-Map; export it: rtabmap-export --images --poses_camera FILE"},
-     {"*.mkv", "is perhaps of an Azure Kinect; unpack it with azure_kinect_mkv_reader.py of Open3D"},
+     {"*.mkv",
+      "is perhaps of an Azure Kinect; unpack it with azure_kinect_mkv_reader.py of Open3D, or depth with "
+      "ffmpeg and calibration.json with mkvextract"},
      {"*.bag", "is a bag; pass it itself"},
      {"*.mcap", "is a bag; pass it itself"},
      {"*.oni", "is of OpenNI; play it as a camera"}}};
@@ -297,8 +300,10 @@ Result<RgbdListing> list_rgbd_folder(const fs::path& folder, const RgbdFolderCon
   if (config.poses_file) {
     SACCADE_CHECK(attach_pose_file(listing, *config.poses_file, config));
   } else if (const auto lists = find_first(folder, rule->pose_list); !lists.empty() && !listing.has_poses) {
-    SACCADE_CHECK(attach_pose_file(listing, lists.front().path, config));
-    if (lists.size() > 1) listing.notes.push_back("poses are those of " + lists.front().path.filename().string());
+    SACCADE_CHECK(attach_pose_lists(listing, lists, config));
+  }
+  for (RgbdFrameFiles& frame : listing.frames) {
+    if (frame.strip) frame.name += "_" + std::to_string(frame.strip->camera);
   }
   return listing;
 }

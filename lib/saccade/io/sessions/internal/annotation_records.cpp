@@ -15,7 +15,7 @@ namespace {
 
 // The order in AnnotationChange is the order of the numbers in files.
 constexpr std::size_t kKinds{std::variant_size_v<AnnotationChange>};
-static_assert(kKinds == 8);
+static_assert(kKinds == 10);
 
 using Bytes = std::vector<std::byte>;
 
@@ -61,6 +61,15 @@ struct Writer {
     }
   }
   void operator()(const ClearAnnotation& /*clear*/) const {}
+  void operator()(const LockLabel& lock) const {
+    append_value(out, lock.label);
+    append_value(out, static_cast<std::uint8_t>(lock.locked ? 1 : 0));
+    append_points(out, lock.points);
+  }
+  void operator()(const PaintLabels& paint) const {
+    append_points(out, paint.points);
+    append_points(out, paint.labels);
+  }
   void operator()(const UndoAction& /*undo*/) const {}
   void operator()(const RedoAction& /*redo*/) const {}
 };
@@ -127,6 +136,15 @@ void read(Reader& in, DefineLabels& define) {
   }
 }
 void read(Reader& /*in*/, ClearAnnotation& /*clear*/) {}
+void read(Reader& in, LockLabel& lock) {
+  lock.label = in.value<std::uint32_t>();
+  lock.locked = in.value<std::uint8_t>() != 0;
+  lock.points = in.points();
+}
+void read(Reader& in, PaintLabels& paint) {
+  paint.points = in.points();
+  paint.labels = in.points();
+}
 void read(Reader& /*in*/, UndoAction& /*undo*/) {}
 void read(Reader& /*in*/, RedoAction& /*redo*/) {}
 

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compare_slices.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <set>
+
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/files/value_io.hpp"
+
+namespace saccade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// For each run the number of its part. Runs of one part have to be done in their order by one process.
+std::vector<std::size_t> part_numbers(const std::vector<PlannedRun>& plan, bool equal_views) {
+  std::vector<std::size_t> numbers;
+  numbers.reserve(plan.size());
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const bool goes_on = equal_views && i > 0 && plan[i].scene == plan[i - 1].scene &&
+                         plan[i].noise == plan[i - 1].noise && plan[i].seed == plan[i - 1].seed;
+    numbers.push_back(i == 0 ? 0 : numbers.back() + (goes_on ? 0 : 1));
+  }
+  return numbers;
+}
+
+std::optional<std::size_t> number_in(std::string_view text) {
+  std::size_t number = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return code == std::errc{} && end == text.data() + text.size() ? std::optional{number} : std::nullopt;
+}
+
+/// "2-of-10".
+std::optional<Slice> slice_of(const std::string& name) {
+  constexpr std::string_view kOf{"-of-"};
+  const std::size_t at = name.find(kOf);
+  if (at == std::string::npos) return std::nullopt;
+  const auto index = number_in(std::string_view{name}.substr(0, at));
+  const auto count = number_in(std::string_view{name}.substr(at + kOf.size()));
+  if (!index || !count || *index >= *count) return std::nullopt;
+  return Slice{*index, *count};
+}
+
+std::vector<fs::path> folders_in(const fs::path& folder) {
+  std::error_code code;
+  std::vector<fs::path> folders;
+  for (const fs::directory_entry& entry : fs::directory_iterator{folder, code}) {
+    if (entry.is_directory(code)) folders.push_back(entry.path());
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+void add_file(std::vector<fs::path>& files, const fs::path& folder) {
+  std::error_code code;
+  if (fs::is_regular_file(folder / kCampaignFile, code)) files.push_back(folder / kCampaignFile);
+}
+
+/// Whether a process of this machine holds the lock of the folder (RunFolder).
+bool is_locked(const fs::path& folder) {
+  const Descriptor opened{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  return opened.get() >= 0 && ::flock(opened.get(), LOCK_SH | LOCK_NB) != 0;
+}
+
+}  // namespace
+
+std::size_t count_parts(const std::vector<PlannedRun>& plan, bool equal_views) {
+  return plan.empty() ? 0 : part_numbers(plan, equal_views).back() + 1;
+}
+
+std::vector<PlannedRun> runs_of(const Slice& slice, const std::vector<PlannedRun>& plan, bool equal_views) {
+  const std::vector<std::size_t> numbers = part_numbers(plan, equal_views);
+  const std::size_t parts = plan.empty() ? 0 : numbers.back() + 1;
+  const std::size_t first = slice.index * parts / slice.count;
+  const std::size_t last = (slice.index + 1) * parts / slice.count;
+  std::vector<PlannedRun> runs;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    if (numbers[i] >= first && numbers[i] < last) runs.push_back(plan[i]);
+  }
+  return runs;
+}
+
+fs::path shard_folder(const fs::path& out, const Slice& slice) {
+  return out / kShardsFolder / (std::to_string(slice.index) + "-of-" + std::to_string(slice.count));
+}
+
+std::string machine_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string{name.data()} : std::string{};
+}
+
+json to_json(const ShardRecord& record) {
+  return {{"slice", record.slice.index}, {"of", record.slice.count},  {"state", kShardStateNames.of(record.state)},
+          {"tries", record.tries},       {"machine", record.machine}, {"job", record.job},
+          {"began", record.began},       {"ended", record.ended},     {"error", record.error}};
+}
+
+Result<ShardRecord> shard_record_from_json(const json& value) {
+  try {
+    ShardRecord record;
+    record.slice = {value.at("slice").get<std::size_t>(), value.at("of").get<std::size_t>()};
+    const auto state = value.at("state").get<std::string>();
+    const auto known = kShardStateNames.find(state);
+    if (!known) return Error{Errc::corrupt_data, "unknown state \"" + state + "\"", {}};
+    record.state = *known;
+    record.tries = value.at("tries").get<std::size_t>();
+    record.machine = value.at("machine").get<std::string>();
+    record.job = value.at("job").get<std::string>();
+    record.began = value.at("began").get<std::string>();
+    record.ended = value.at("ended").get<std::string>();
+    record.error = value.at("error").get<std::string>();
+    return record;
+  } catch (const json::exception& error) {
+    return Error{Errc::corrupt_data, message_of(error), {}};
+  }
+}
+
+Result<ShardRecord> read_shard_record(const fs::path& folder, const Slice& slice) {
+  const fs::path file = folder / kShardRecord;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return ShardRecord{.slice = slice};
+  SACCADE_TRY(const json value, read_json(file));
+  Result<ShardRecord> record = shard_record_from_json(value);
+  if (!record) return in_file(record.error(), file);
+  if (record->state == ShardState::running && record->machine == machine_name() && !is_locked(folder)) {
+    record->state = ShardState::killed;
+  }
+  return record;
+}
+
+Result<std::vector<fs::path>> campaign_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  add_file(files, folder);
+  for (const fs::path& below : {folder, folder / kShardsFolder}) {
+    for (const fs::path& shard : folders_in(below)) add_file(files, shard);
+  }
+  if (files.empty()) {
+    return Error{Errc::not_found, std::string{"there is no "} + kCampaignFile + " of a campaign or a shard in it",
+                 folder.string()};
+  }
+  return files;
+}
+
+std::vector<fs::path> shard_files(const fs::path& out) {
+  std::vector<fs::path> files;
+  for (const fs::path& shard : folders_in(out / kShardsFolder)) add_file(files, shard);
+  return files;
+}
+
+Result<std::vector<SliceProgress>> progress_of(const Comparison& comparison, const std::vector<PlannedRun>& plan) {
+  const CompareOptions& options = comparison.options();
+  std::set<std::size_t> counts;
+  for (const fs::path& shard : folders_in(options.out / kShardsFolder)) {
+    if (const auto slice = slice_of(shard.filename().string())) counts.insert(slice->count);
+  }
+  std::vector<SliceProgress> slices;
+  for (const std::size_t count : counts) {
+    for (std::size_t index = 0; index < count; ++index) {
+      const Slice slice{index, count};
+      SliceProgress progress;
+      SACCADE_TRY(progress.record, read_shard_record(shard_folder(options.out, slice), slice));
+      const std::vector<PlannedRun> runs = runs_of(slice, plan, options.equal_views);
+      progress.planned = runs.size();
+      progress.done = static_cast<std::size_t>(
+          std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; }));
+      slices.push_back(std::move(progress));
+    }
+  }
+  return slices;
+}
+
+json slices_json(const std::vector<SliceProgress>& slices) {
+  json all = json::array();
+  for (const SliceProgress& slice : slices) {
+    json one = to_json(slice.record);
+    one["planned"] = slice.planned;
+    one["done"] = slice.done;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/cuda/hybrid_map.hpp"
+
+namespace saccade {
+
+Result<HybridMap> HybridMap::create(const TsdfConfig& config, std::optional<GpuMap> gpu) {
+  SACCADE_TRY(TsdfMap map, TsdfMap::create(config));
+  return HybridMap{std::move(map), std::move(gpu)};
+}
+
+Status HybridMap::catch_up(const Executor& executor) {
+  if (!gpu_ || frames_.empty()) return {};
+  if (Result<TsdfSnapshot> content = gpu_->snapshot(); content.ok()) {
+    cpu_ = TsdfMap{std::move(content).value()};
+  } else {
+    problem_ = content.error().message;
+    gpu_.reset();
+    for (const FusedFrame& frame : frames_)
+      SACCADE_CHECK(cpu_.integrate(frame.camera, frame.depth, frame.T_world_camera, executor));
+  }
+  frames_.clear();
+  return {};
+}
+
+template <class OnGpu, class OnCpu>
+auto HybridMap::step(const OnGpu& on_gpu, const OnCpu& on_cpu, const Executor& executor) -> decltype(on_cpu()) {
+  if (gpu_) {
+    auto result = on_gpu();
+    const bool failed =
+        !result.ok() && (result.error().code == Errc::unavailable || result.error().code == Errc::unsupported);
+    if (!failed) return result;
+    problem_ = result.error().message;
+  }
+  SACCADE_CHECK(catch_up(executor));
+  return on_cpu();
+}
+
+Result<FusionStats> HybridMap::integrate(const PinholeCamera& camera, const DepthImage& depth,
+                                         const Pose& T_world_camera, const Executor& executor) {
+  const auto on_gpu = [&]() -> Result<FusionStats> {
+    Result<FusionStats> stats = gpu_->integrate(camera, depth, T_world_camera);
+    if (stats.ok()) frames_.push_back({camera, depth, T_world_camera});
+    return stats;
+  };
+  const auto on_cpu = [&]() -> Result<FusionStats> {
+    Result<FusionStats> stats = cpu_.integrate(camera, depth, T_world_camera, executor);
+    if (gpu_ && stats.ok() && !gpu_->follow(cpu_.content(), executor).ok()) gpu_.reset();
+    return stats;
+  };
+  SACCADE_TRY(const FusionStats stats, step(on_gpu, on_cpu, executor));
+  if (frames_.size() >= kMostFrames) SACCADE_CHECK(catch_up(executor));
+  return stats;
+}
+
+Result<SurfaceView> HybridMap::raycast(const PinholeCamera& camera, const Pose& T_world_camera,
+                                       const Executor& executor) {
+  return step([&] { return gpu_->raycast(camera, T_world_camera); },
+              [&] { return saccade::raycast(cpu_.content(), camera, T_world_camera, executor); }, executor);
+}
+
+Result<GainResult> HybridMap::evaluate_views(const Region& region, std::span<const Pose> T_world_camera,
+                                             const GainConfig& config, const Executor& executor) {
+  return step([&] { return gpu_->evaluate_views(region, T_world_camera, config, executor); },
+              [&] { return saccade::evaluate_views(cpu_.content(), region, T_world_camera, config, executor); },
+              executor);
+}
+
+Result<ExpectedSurface> HybridMap::expected_surface(const ExpectedSurfaceConfig& config, const Executor& executor) {
+  SACCADE_CHECK(catch_up(executor));
+  return saccade::expected_surface(cpu_.content(), config, executor, gpu());
+}
+
+Result<TsdfSnapshot> HybridMap::snapshot(const Executor& executor) {
+  SACCADE_CHECK(catch_up(executor));
+  return cpu_.snapshot();
+}
+
+}  // namespace saccade

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// GpuMap::Impl: the parts of a GpuMap, made on any device.
+
+#include <memory>
+#include <string>
+
+#include "saccade/cuda/gpu_map.hpp"
+#include "saccade/cuda/internal/gpu_fusion.hpp"
+#include "saccade/cuda/internal/gpu_gain.hpp"
+#include "saccade/cuda/internal/gpu_raycast.hpp"
+#include "saccade/cuda/internal/metered_compute.hpp"
+#include "saccade/cuda/internal/paged_bricks.hpp"
+#include "saccade/cuda/internal/surface_on_device.hpp"
+
+namespace saccade {
+
+/// Members in the order of their lives: buffers go before the device does.
+class GpuMap::Impl {
+ public:
+  Impl(const TsdfConfig& config, std::unique_ptr<internal::cuda::Compute> device, std::string name)
+      : backend{std::move(name)}, compute{std::move(device)}, bricks{compute, config} {}
+
+  std::string backend;
+  internal::cuda::MeteredCompute compute;
+  internal::cuda::PagedBricks bricks;
+  internal::cuda::GpuFusion fusion{compute};
+  internal::cuda::GpuGain gain{compute};
+  internal::cuda::GpuRaycast raycast{compute};
+  internal::cuda::SurfaceOnDevice surface{compute};
+
+  /// Calls work() with the bricks of a box on the device; a second time with these alone, where memory was short.
+  template <class Work>
+  auto with_bricks(const IndexBox& needed, const Work& work) -> decltype(work()) {
+    SACCADE_CHECK(bricks.bring_in(needed));
+    auto result = work();
+    if (result.ok() || bricks.is_paged() || !may_be_short(result.error())) return result;
+    SACCADE_CHECK(bricks.page_to(needed));
+    return work();
+  }
+  /// Tells whether an error may mean that the map is too large for the device.
+  [[nodiscard]] static bool may_be_short(const Error& error) {
+    return error.code == Errc::unavailable || error.code == Errc::unsupported;
+  }
+};
+
+namespace internal::cuda {
+
+/// Makes maps on devices that a test or a benchmark provides.
+struct GpuMapMaker {
+  [[nodiscard]] static GpuMap make(const TsdfConfig& config, std::unique_ptr<Compute> device) {
+    return GpuMap{std::make_unique<GpuMap::Impl>(config, std::move(device), "cuda emulated")};
+  }
+};
+
+}  // namespace internal::cuda
+
+}  // namespace saccade

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/trial/benchmark_objects.hpp"
+
+#include "saccade/core/names.hpp"
+#include "saccade/io/clouds/any_mesh.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/trial/internal/md5.hpp"
+#include "saccade/trial/internal/stand_ins.hpp"
+
+namespace saccade {
+namespace {
+
+std::string files_of(const Benchmark& benchmark) {
+  return joined(benchmark.meshes, "; ", [](const BenchmarkMesh& mesh) { return mesh.file + " (" + mesh.from + ")"; });
+}
+
+Status check(const BenchmarkMesh& mesh, const std::filesystem::path& path) {
+  SACCADE_TRY(const std::vector<std::byte> bytes, read_file(path));
+  const std::string found = md5_of(bytes);
+  if (found == mesh.md5) return {};
+  return Error{Errc::invalid_argument,
+               "this is another file than the protocol's: its MD5 is " + found + ", not " + mesh.md5 +
+                   "; the right one: " + mesh.from,
+               path.string()};
+}
+
+}  // namespace
+
+Result<std::vector<BenchmarkObject>> stand_ins_of(const Benchmark& benchmark) {
+  std::vector<BenchmarkObject> objects;
+  for (const std::string& name : benchmark.stand_ins) {
+    SACCADE_TRY(std::vector<TriangleMesh> bodies, stand_in(name));
+    objects.push_back({name, std::move(bodies)});
+  }
+  return objects;
+}
+
+Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, const std::filesystem::path& folder) {
+  std::vector<BenchmarkObject> objects;
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    return Error{Errc::not_found, "there is no such folder of meshes", folder.string()};
+  }
+  for (const BenchmarkMesh& named : benchmark.meshes) {
+    const std::filesystem::path path = folder / named.file;
+    if (!std::filesystem::exists(path, ignored)) continue;
+    SACCADE_CHECK(check(named, path));
+    SACCADE_TRY(TriangleMesh mesh, read_any_mesh(path));
+    if (mesh.triangles.empty()) return Error{Errc::corrupt_data, "the file has no triangles", path.string()};
+    if (named.up == UpAxis::y) {
+      for (Eigen::Vector3f& p : mesh.vertices) p = {p.x(), -p.z(), p.y()};
+    }
+    mesh.normals.clear();
+    objects.push_back({path.stem().string(), {std::move(mesh)}});
+  }
+  if (!objects.empty()) return objects;
+  if (benchmark.meshes.empty()) {
+    return Error{Errc::invalid_argument,
+                 "the protocol " + benchmark.name + " has scenes of its own, and takes no meshes", folder.string()};
+  }
+  return Error{Errc::not_found, "none of the meshes of " + benchmark.name + " is there: " + files_of(benchmark),
+               folder.string()};
+}
+
+}  // namespace saccade

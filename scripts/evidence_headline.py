@@ -1,0 +1,168 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""The headline figures: a hundred scenes, ten seeds, five strategies: evidence_headline.py PROGRAM FOLDER DOCUMENT [table].
+
+Two campaigns of 5,000 runs, each in a folder of its own under FOLDER, with its page (index.html). They grow seed by
+seed, so that an interrupted campaign has whole seeds of all scenes; the same call goes on. Where a cluster answers
+(`sinfo`), a campaign is submitted to Slurm as a job array, and a later call merges what its tasks have done. With
+"table", nothing runs. DOCUMENT gets the figures of the runs that are there, and says how many they are.
+Exit status 0: complete, and all that is held to was met; 1: something was missed; 2: a campaign failed; 3: not complete.
+SACCADE_HEADLINE_SEEDS: how many seeds (10). SACCADE_SLURM=off: runs here although a cluster answers.
+SACCADE_SLURM_OPTIONS: further options of `compare --slurm`, as "--partition long --time 2:00:00"."""
+import math
+import os
+import pathlib
+import shlex
+import shutil
+import statistics
+import subprocess
+import sys
+
+from evidence_planner import Figures, Held, calibration, student_t
+
+INTERRUPTED = (129, 130, 143)  # exit statuses of saccade
+SCENES = 100
+SEEDS = 10
+STRATEGIES = ("surface", "oracle", "sphere", "standard", "attention")
+CAMPAIGNS = {"arm": ("The arm", ["--robot", "comau"]), "flying": ("A flying camera", [])}
+FIGURES = (("coverage", "coverage, %", 100, 1), ("coverage_area", "its area, %", 100, 1),
+           ("unknown_near_objects", "unknown near objects", 1, 0), ("views", "views", 1, 2))
+
+
+def options(kind, seeds):
+    return ["--scenes", f"clutter:201-{200 + SCENES}", "--strategies", ",".join(STRATEGIES), "--seeds",
+            f"1-{seeds}" if seeds > 1 else "1", "--max-views", "5", *CAMPAIGNS[kind][1]]
+
+
+def cluster_answers():
+    if os.environ.get("SACCADE_SLURM") == "off" or not shutil.which("sbatch"):
+        return False
+    return subprocess.run(["sinfo", "--noheader"], capture_output=True, check=False).returncode == 0
+
+
+def compare(program, folder, arguments):
+    folder.mkdir(parents=True, exist_ok=True)
+    command = [program, "--quiet", "compare", *arguments, "--out", str(folder / "campaign")]
+    print(f"  {shlex.join(command)}", flush=True)
+    with (folder / "log.txt").open("a") as log:
+        status = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
+    if status in INTERRUPTED:
+        sys.exit(status)
+    return status == 0
+
+
+def run(program, folder, kind, seeds):
+    """@return false where the campaign failed."""
+    if not cluster_answers():
+        return all(compare(program, folder, options(kind, upto)) for upto in range(1, seeds + 1))
+    merged = not (folder / "campaign/shards").is_dir() or compare(program, folder, [*options(kind, seeds), "--merge"])
+    if not merged or missing(folder, seeds) == 0:
+        return merged
+    submitted = compare(program, folder, [*options(kind, seeds), "--slurm",
+                                          *shlex.split(os.environ.get("SACCADE_SLURM_OPTIONS", ""))])
+    return submitted or (folder / "log.txt").read_text().rstrip().splitlines()[-1].find("still queued or running") >= 0
+
+
+def missing(folder, seeds):
+    table = folder / "campaign/runs.csv"
+    there = max(0, sum(1 for _ in table.open()) - 1) if table.exists() else 0
+    return SCENES * seeds * len(STRATEGIES) - there
+
+
+def interval(values):
+    """Mean over scenes, and the half width of its 95 % interval."""
+    if len(values) < 2:
+        return (values[0] if values else math.nan), math.inf
+    return statistics.mean(values), student_t(len(values) - 1) * statistics.stdev(values) / math.sqrt(len(values))
+
+
+def means(figures):
+    lines = ["| strategy | " + " | ".join(title for _, title, _, _ in FIGURES) + " | rank correlation | kept, median |",
+             "|---|" + "---|" * (len(FIGURES) + 2)]
+    for strategy in STRATEGIES:
+        cells = []
+        for figure, _, times, digits in FIGURES:
+            mean, half = interval(list(figures.by_scene(strategy, figure).values()))
+            cells.append(f"{times * mean:,.{digits}f} ± {times * half:,.{digits}f}")
+        pairs = [pair for views in figures.promises(strategy).values() for pair in views]
+        cells += ["–"] * 2 if strategy == "oracle" else [f"{value:.2f}" for value in calibration(pairs)]
+        lines.append(f"| `{strategy}` | " + " | ".join(cells) + " |")
+    return lines
+
+
+def differences(figures):
+    lines = ["| surface beside | " + " | ".join(title for _, title, _, _ in FIGURES) + " | scenes with more area |",
+             "|---|" + "---|" * (len(FIGURES) + 1)]
+    for other in STRATEGIES[1:]:
+        cells = []
+        for figure, _, times, digits in FIGURES:
+            mean, half = figures.gap("surface", other, figure)
+            differs = "**" if abs(mean) > half else ""
+            cells.append(f"{differs}{times * mean:+,.{digits + 1}f} ± {times * half:,.{digits + 1}f}{differs}")
+        ours, theirs = (figures.by_scene(strategy, "coverage_area") for strategy in ("surface", other))
+        both = [scene for scene in ours if scene in theirs]
+        cells.append(f"{sum(ours[scene] > theirs[scene] for scene in both)} of {len(both)}")
+        lines.append(f"| `{other}` | " + " | ".join(cells) + " |")
+    return lines
+
+
+def hold(figures):
+    held = Held()
+    gap, half = figures.gap("surface", "oracle", "coverage")
+    held.to("coverage beside the oracle's, points, low end of the interval", 100 * (gap - half), -0.5, True)
+    held.to("area as a share of the oracle's",
+            figures.mean("surface", "coverage_area") / figures.mean("oracle", "coverage_area"), 0.98, True, 3)
+    held.to("unknown near objects, as a multiple of the oracle's",
+            figures.mean("surface", "unknown_near_objects") / figures.mean("oracle", "unknown_near_objects"), 1.3, False)
+    for other in STRATEGIES[2:]:
+        gap, half = figures.gap("surface", other, "coverage_area")
+        held.to(f"area beside {other}'s, points, low end of the interval", 100 * (gap - half), 0.0, True)
+    return held
+
+
+def section(kind, folder, seeds):
+    title, _ = CAMPAIGNS[kind]
+    lines = [f"## {title}", "", "```sh", f"saccade compare {' '.join(options(kind, seeds))} --out DIR", "```", ""]
+    if not (folder / "campaign/runs.csv").exists():
+        return [*lines, "Not run yet.", ""], 0
+    figures = Figures(folder / "campaign", STRATEGIES)
+    done = {}
+    for entry in figures.runs:
+        done.setdefault((entry["scene"], entry["seed"]), set()).add(entry["strategy"])
+    whole = {key for key, strategies in done.items() if len(strategies) == len(STRATEGIES)}
+    figures.runs = [entry for entry in figures.runs if (entry["scene"], entry["seed"]) in whole]
+    figures.views = [view for view in figures.views if (view["scene"], view["seed"]) in whole]
+    if len({scene for scene, _ in whole}) < 2:
+        return [*lines, f"{len(whole)} pairs of a scene and a seed so far: too few for figures.", ""], 0
+    count, scenes = len(figures.runs), len({scene for scene, _ in whole})
+    held = hold(figures)
+    lines += [f"{count:,} of {SCENES * seeds * len(STRATEGIES):,} runs: {scenes} scenes, {len(whole) / scenes:.1f} seeds each.", "",
+              *means(figures), "", *differences(figures), "", *held.lines, ""]
+    return lines, held.missed
+
+
+def main():
+    program, folder, document, *rest = sys.argv[1:]
+    seeds = int(os.environ.get("SACCADE_HEADLINE_SEEDS", SEEDS))
+    failed, incomplete, missed = [], [], 0
+    lines = ["# The headline figures", "",
+             "Written by `make evidence` (`scripts/evidence_headline.py`). A hundred scenes of random clutter that nothing was chosen by, "
+             "the noise of a Kinect v1, five views after the initial scan. Each scene counts once, with the mean of its seeds; "
+             "± is half of the 95 % interval over scenes. Differences are paired by scene; bold ones differ from 0 by the paired "
+             "t-test at 5 %. [Metrics](../reference/metrics.md), [strategies](../guides/exploration.md).", ""]
+    for kind in CAMPAIGNS:
+        home = pathlib.Path(folder) / kind
+        if rest != ["table"] and not run(program, home, kind, seeds):
+            failed.append(kind)
+        if missing(home, seeds) > 0:
+            incomplete.append(kind)
+        told, missed_here = section(kind, home, seeds)
+        lines += told
+        missed += missed_here
+    pathlib.Path(document).write_text("\n".join(lines).rstrip() + "\n")
+    print(f"  {document}: {missed} missed; failed: {', '.join(failed) or 'none'}; not complete: {', '.join(incomplete) or 'none'}")
+    return 2 if failed else 1 if missed else 3 if incomplete else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

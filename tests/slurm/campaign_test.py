@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""A campaign on a cluster of two nodes, of which one is lost on the way and two tasks are killed, equals the same campaign on
+one machine to the bit.
+
+Usage: campaign_test.py SACCADE. Ends with 77 where Slurm is not installed."""
+import json
+import os
+import pathlib
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+import unittest
+
+from cluster import Cluster, until
+
+PROGRAM = os.path.abspath(sys.argv[1])
+TIMES = {"id", "run", "seconds", "finished_at"}
+
+
+def comparison(out, *more):
+    return [PROGRAM, "compare", "--scenes", "clutter:5-6", "--strategies", "sphere,random", "--seeds", "1-6", "--max-views", "1",
+            "--min-gain", "1", "--image-size", "160,120", "--voxel-size", "0.015", "--quiet", "--out", str(out), *more]
+
+
+def run(out, *more):
+    done = subprocess.run(comparison(out, *more), capture_output=True, text=True, timeout=300)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(more)}: {done.returncode}\n{done.stderr}")
+    return done.stdout
+
+
+def rows(out):
+    """All that a campaign holds but the times, and where it was made; every number with all its bits."""
+    with sqlite3.connect(f"file:{out}/campaign.sqlite?mode=ro", uri=True) as file:
+        file.row_factory = sqlite3.Row
+        tables = [list(file.execute("SELECT * FROM runs")),
+                  list(file.execute("SELECT runs.scene, runs.strategy, runs.noise, runs.seed, views.* FROM views "
+                                    "JOIN runs ON runs.id = views.run"))]
+    return [sorted(tuple((name, value.hex() if isinstance(value, float) else value) for name, value in zip(row.keys(), row)
+                         if name not in TIMES and not name.endswith("_ms")) for row in table) for table in tables]
+
+
+class CampaignTest(unittest.TestCase):
+    def test_a_lost_node_and_killed_tasks_change_nothing(self):
+        with Cluster() as cluster:
+            try:
+                self.check(cluster)
+            except BaseException:
+                print(cluster.logs())
+                for log in sorted(cluster.folder.glob("sliced/logs/*")):
+                    print(f"--- {log.name}\n{log.read_text()[-2000:]}")
+                raise
+
+    def check(self, cluster):
+        whole, sliced = cluster.folder / "whole", cluster.folder / "sliced"
+        run(whole)
+        began = time.monotonic()
+        print(run(sliced, "--slurm", "--tasks", "8", "--time", "10"))
+        refused = subprocess.run(comparison(sliced, "--slurm"), capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 3)
+        self.assertIn("still queued or running", refused.stderr)
+
+        # The two tasks of one node are killed once they have begun, and the other node is lost with all that it does.
+        def busy():
+            tasks = cluster.tasks()
+            begun = len(list(sliced.glob("shards/*/shard.json")))
+            return tasks if begun == 4 and sorted(node for _, node in tasks) == ["one", "one", "two", "two"] else None
+        for process, node in until(busy, 60, "both nodes are busy"):
+            if node == "two":
+                os.kill(process, signal.SIGKILL)
+        lost = cluster.lose_node("one")
+        print(f"two tasks killed, a node lost with {lost} tasks, {time.monotonic() - began:.1f} s after the submission")
+        self.assertEqual(lost, 2)
+        until(cluster.is_done, 120, "the queue is empty")
+        print(f"the queue is empty after {time.monotonic() - began:.1f} s")
+
+        status = json.loads(run(sliced, "--status", "--json", "-"))["result"]
+        print(run(sliced, "--status"))
+        tries = [slice["tries"] for slice in status["slices"]]
+        self.assertGreaterEqual(max(tries), 2, "a task of the lost node was taken again")
+        self.assertLess(status["runs"]["done"], status["runs"]["planned"], "killed tasks are missing")
+        self.assertGreaterEqual(sum(slice["state"] == "killed" for slice in status["slices"]), 2)
+
+        # Failed tasks are taken again, on the node that is left, and merged by the job after it.
+        print(run(sliced, "--slurm", "--tasks", "8"))
+        until(cluster.is_done, 120, "the queue is empty")
+        print(f"complete after {time.monotonic() - began:.1f} s")
+        status = json.loads(run(sliced, "--status", "--json", "-"))["result"]
+        self.assertEqual(status["runs"]["merged"], 24)
+        self.assertEqual(rows(whole), rows(sliced))
+        self.assertEqual(len(rows(sliced)[0]), 24)
+        self.assertIn("all runs are done", run(sliced, "--slurm", "--tasks", "8"))
+        again = run(sliced, "--merge")
+        self.assertIn("0 merged now, 24 known", again)
+        self.assertEqual(rows(whole), rows(sliced))
+        self.assertTrue((sliced / "index.html").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// An exploration whose expected surface a device computes takes the same views as one on the CPU, to the bit: on a
+// device with room for the map, with room for parts of it, and with next to none.
+#include <gtest/gtest.h>
+
+#include "saccade/cuda/gpu_map.hpp"
+#include "saccade/explore/explorer.hpp"
+#include "saccade/explore/planners.hpp"
+#include "saccade/scene/scene.hpp"
+#include "saccade/scene/simulated_camera.hpp"
+#include "saccade/trial/simulated_run.hpp"
+#include "support/parallel_backend.hpp"
+
+namespace saccade {
+namespace {
+
+const RayScene& scene_for_device() {
+  static const RayScene built = *RayScene::build(random_clutter(6, 3));
+  return built;
+}
+
+TsdfMap map_for_device() {
+  TsdfConfig config;
+  config.voxel_size_m = 0.014;
+  config.workspace = scene_for_device().scene().workspace;
+  return *TsdfMap::create(config);
+}
+
+/// Explores by expected surface. @param device nullptr: none.
+RunRecord explored(TsdfMap& map, SurfaceDevice* device) {
+  const Executor executor = Executor::with_threads(2, test::kParallelBackend);
+  SimulatedCameraConfig sensor;
+  sensor.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.4, 3.0};
+  SimulatedCamera camera = *SimulatedCamera::create(scene_for_device(), sensor);
+  FunctionCamera frames{camera.camera(), [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose); }};
+  FreeRobot robot = *flying_camera(scene_for_device());
+  ExplorerConfig config;
+  config.max_views = 3;
+  config.oscillation_frames = 2;
+  PlannerSetup setup;
+  setup.gain.sensor = sensor.camera;
+  setup.least_share = 0.0;
+  setup.planner.min_gain = 0.0;
+  ExplorerParts parts{map, frames, robot, executor};
+  parts.device = device;
+  Explorer explorer{std::move(parts), config};
+  const std::vector<Pose> scan{scene_for_device().scene().scan.front()};
+  EXPECT_TRUE(explorer.scan(scan)->complete);
+  ViewPlanner planner{surface_planner().make(setup)};
+  return *explorer.explore(planner, RunRecord{});
+}
+
+TEST(ExploreOnDevice, TakesTheViewsOfTheCpu) {
+  TsdfMap expected_map = map_for_device();
+  const RunRecord expected = explored(expected_map, nullptr);
+  ASSERT_FALSE(expected.views.empty());
+  for (const std::size_t memory : {~std::size_t{0}, std::size_t{3'000'000}, std::size_t{100'000}}) {
+    SCOPED_TRACE(memory);
+    TsdfMap map = map_for_device();
+    GpuMap gpu =
+        GpuMap::create_emulated(map.config(), Executor::with_threads(2, test::kParallelBackend), memory).value();
+    const RunRecord run = explored(map, &gpu);
+    ASSERT_EQ(run.views.size(), expected.views.size());
+    for (std::size_t i = 0; i < run.views.size(); ++i) {
+      EXPECT_EQ(run.views[i].T_world_camera.matrix(), expected.views[i].T_world_camera.matrix());
+      EXPECT_EQ(run.views[i].gain_predicted, expected.views[i].gain_predicted);
+    }
+    EXPECT_TRUE(map.content().grid == expected_map.content().grid);
+    if (memory == ~std::size_t{0}) {
+      EXPECT_GT(gpu.traffic().kernels, 20U) << "the device did the work";
+      EXPECT_FALSE(gpu.is_paged());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace saccade
