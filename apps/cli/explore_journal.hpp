@@ -9,6 +9,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/explore/run_record.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/surfel/surfel_map.hpp"
 
 namespace saccade::cli {
 
@@ -21,15 +22,17 @@ struct ExploreJournal {
   /// Frames that the camera has taken.
   [[nodiscard]] std::size_t frames() const;
 
-  /// Writes the map and then the journal that names it, and removes the map of the last time: whatever happens in
-  /// between, one complete pair is there. With `keep_as` the map stays under that name, too. io_failure.
-  [[nodiscard]] Status save(const std::filesystem::path& folder, const TsdfSnapshot& map, const Executor& executor,
-                            const std::string& keep_as = {}) const;
+  /// Writes the map, the surfels unless they are null, and then the journal that names them, and removes those of the
+  /// last time: whatever happens in between, one complete set is there. With `keep_as` the map stays under that name,
+  /// too. io_failure.
+  [[nodiscard]] Status save(const std::filesystem::path& folder, const TsdfSnapshot& map, const SurfelMap* surfels,
+                            const Executor& executor, const std::string& keep_as = {}) const;
 };
 
 struct SavedExploration {
   ExploreJournal journal;
   TsdfSnapshot map;
+  std::optional<SurfelMap> surfels{};  ///< set where the run has --map surfels
 };
 
 /// Whether the folder holds an unfinished run.

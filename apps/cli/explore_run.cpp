@@ -54,6 +54,7 @@ json settings_of(const ExploreOptions& options, const ExploreSetup& subject, con
   if (run.clearing_percent != 100) settings["clearing_percent"] = run.clearing_percent;
   if (json reading = server::arm_reading_to_json(options.arm_reading.urdf); !reading.empty())
     settings["arm_reading"] = std::move(reading);
+  if (options.surfels) settings["free_voxel_m"] = run.free_voxel_m;
   if (run.as_printed) settings["as_printed"] = true;
   if (options.speed) settings["speed"] = *options.speed;
   if (!options.map.empty()) settings["map"] = options.map.string();
@@ -129,6 +130,12 @@ Status ExploreRun::resume(SavedExploration saved) {
   journal_ = std::move(saved.journal);
   map_ = TsdfMap{std::move(saved.map)};
   before_ = map_.snapshot();
+  if (options_.surfels && saved.surfels) {
+    SACCADE_TRY(*options_.surfels, SurfelModel::create(SurfelModel::default_config(), std::move(*saved.surfels)));
+    if (options_.write_pictures) {
+      SACCADE_TRY(surfels_before_, draw_surfels_now());
+    }
+  }
   if (truth_meter_) truth_meter_->begin(before_);
   devices_.resume_at(journal_.frames());
   return journal_.q && !options_.moves_real() ? devices_.place_arm(*journal_.q) : Status{};
@@ -247,12 +254,8 @@ Status ExploreRun::save_journal() {
   journal_.q = devices_.robot().configuration();
   const std::string kept =
       options_.keeps_views() && journal_.scanned ? view_file(journal_.run.views.size(), ".sacmap") : "";
-  if (options_.surfels) {  // they are not kept on the way, so that there is nothing to go on with
-    if (!kept.empty()) SACCADE_CHECK(save_map(map(), out_ / kept, executor_));
-    if (recorded_) recorded_();
-    return {};
-  }
-  SACCADE_CHECK(journal_.save(out_.path(), map(), executor_, kept));
+  const SurfelMap* surfels = options_.surfels ? &options_.surfels->surfels() : nullptr;
+  SACCADE_CHECK(journal_.save(out_.path(), map(), surfels, executor_, kept));
   if (recorded_) recorded_();
   return {};
 }

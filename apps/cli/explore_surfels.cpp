@@ -22,7 +22,6 @@ constexpr std::array kRefused{
     Refused{"--voxel-size", "with --map surfels surface has no voxels; --free-voxel sets those of free space"},
     Refused{"--truncation", "with --map surfels surface has no voxels; leave it out"},
     Refused{"--saliency", "with --map surfels nothing is segmented; leave it out, or explore a volume"},
-    Refused{"--resume", "an exploration with --map surfels keeps no journal; start it anew with --force"},
     Refused{"--dry-run", "moves nothing and sees no surfel; leave --map surfels out"},
 };
 

@@ -2,6 +2,9 @@
 // saccade explore --map surfels: a short run, its files and its record, and options that it refuses.
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <fstream>
+
 #include "run_program.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/json_io.hpp"
@@ -15,6 +18,11 @@ Arguments on_surfels(const fs::path& out, const Arguments& more = {}) {
   return Arguments{"explore", tiny_cell_file(), "--out",   out.string(),   "--map",   "surfels",     "--quiet",
                    "--robot", "free",           "--force", "--image-size", "160,120", "--max-views", "2"} +
          more;
+}
+
+Arguments shortly_on_surfels(const fs::path& out) {
+  return {"explore", tiny_cell_file(), "--out",        out.string(), "--map",       "surfels", "--quiet",
+          "--robot", "free",           "--image-size", "96,72",      "--max-views", "1",       "--no-pictures"};
 }
 
 TEST(ExploreSurfels, ARunLeavesSurfelsPicturesAndARecord) {
@@ -43,6 +51,36 @@ TEST(ExploreSurfels, ARunLeavesSurfelsPicturesAndARecord) {
   EXPECT_GT(result.at("final").at("coverage").get<double>(), result.at("initial").at("coverage").get<double>());
   ASSERT_FALSE(result.at("views").empty());
   EXPECT_GT(result.at("views").at(0).at("gain_observed").get<double>(), 0.0);
+}
+
+TEST(ExploreSurfels, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers";
+  const TempFolder folder;
+  const fs::path whole = folder / "whole";
+  const fs::path killed = folder / "killed";
+  ASSERT_EQ(run_program(shortly_on_surfels(whole)).status, 0);
+  {
+    RunningProgram program{shortly_on_surfels(killed)};
+    ASSERT_TRUE(wait_for_file(killed / "checkpoint-0.npy"));
+    program.send(SIGKILL);
+    EXPECT_EQ(program.finish().status, -1);
+  }
+  const Arguments resume = shortly_on_surfels(killed) + Arguments{"--resume"};
+  const std::string journal = text_of(killed / "journal.json");
+  const std::string name = nlohmann::json::parse(journal).at("surfels").at("file").get<std::string>();
+  const std::string surfels = text_of(killed / name);
+  std::string damaged = surfels;
+  damaged.back() ^= 1;
+  std::ofstream{killed / name, std::ios::binary} << damaged;
+  expect_failure(run_program(resume), 3, "explore", {name, "checksum"});
+  std::ofstream{killed / name, std::ios::binary} << surfels;
+  expect_failure(run_program(resume + Arguments{"--free-voxel", "0.03"}), 3, "explore",
+                 {"free_voxel_m 0.02, not 0.03"});
+  const Outcome resumed = run_program(resume);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  for (const char* file : {"surfels.ply", "unknown.ply", "map.sacmap"})
+    EXPECT_TRUE(text_of(killed / file) == text_of(whole / file)) << file;
+  EXPECT_EQ(names_in(killed), names_in(whole));  // no journal and no checkpoint are left
 }
 
 TEST(ExploreSurfels, AVolumeTellsItsMemoryToo) {

@@ -5,6 +5,12 @@
 
 namespace saccade {
 
+SurfelFusionConfig SurfelModel::default_config() {
+  SurfelFusionConfig config;
+  config.max_stretch = 4.0;  // a slant of 75°, as Keller et al. have it
+  return config;
+}
+
 Status SurfelModel::fuse(const Frame& frame, const PinholeCamera& camera, const Executor& executor) {
   SACCADE_TRY([[maybe_unused]] const SurfelFusionReport report, fusion_.add_frame(frame, camera, executor));
   return {};

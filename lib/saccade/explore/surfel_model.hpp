@@ -2,6 +2,8 @@
 #pragma once
 // SurfelModel: surfels as the model of an exploration. surfel_planner: chooses views on it.
 
+#include <utility>
+
 #include "saccade/explore/planners.hpp"
 #include "saccade/explore/surface_model.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
@@ -13,10 +15,15 @@ namespace saccade {
 class SurfelModel final : public SurfaceModel {
  public:
   /// Errors: those of SurfelFusion::create.
-  [[nodiscard]] static Result<SurfelModel> create(const SurfelFusionConfig& config = {}) {
-    SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(config));
+  /// @param map  the surfels of an exploration that goes on
+  [[nodiscard]] static Result<SurfelModel> create(const SurfelFusionConfig& config = default_config(),
+                                                  SurfelMap map = {}) {
+    SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(config, std::move(map)));
     return SurfelModel{std::move(fusion)};
   }
+  /// Returns the configuration of explorations: discs whose rims stand off a surface would count as that surface, and
+  /// hide others.
+  [[nodiscard]] static SurfelFusionConfig default_config();
   /// Errors: those of SurfelFusion::add_frame. O(surfels + pixels).
   [[nodiscard]] Status fuse(const Frame& frame, const PinholeCamera& camera, const Executor& executor) override;
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
@@ -59,15 +60,18 @@ Status SurfelFusionConfig::validate() const {
   if (!std::isfinite(depth_tolerance_growth_per_m) || depth_tolerance_growth_per_m < 0.0) {
     return Error{Errc::invalid_argument, "surfel fusion: the growth of the tolerance must not be negative", {}};
   }
+  if (!std::isfinite(max_stretch) || max_stretch < 1.0) {
+    return Error{Errc::invalid_argument, "surfel fusion: the stretch must be at least 1, and finite", {}};
+  }
   if (std::max(max_normal_angle_rad, max_view_angle_rad) >= 90_deg) {
     return Error{Errc::invalid_argument, "surfel fusion: angles must be less than 90°", {}};
   }
   return {};
 }
 
-Result<SurfelFusion> SurfelFusion::create(const SurfelFusionConfig& config) {
+Result<SurfelFusion> SurfelFusion::create(const SurfelFusionConfig& config, SurfelMap map) {
   SACCADE_CHECK(config.validate());
-  return SurfelFusion{config};
+  return SurfelFusion{config, std::move(map)};
 }
 
 void SurfelFusion::prepare(const PinholeCamera& camera, const Pose& T_world_camera) {
@@ -184,7 +188,7 @@ void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, c
 void SurfelFusion::integrate(const Frame& frame, const Executor& executor, SurfelFusionReport& report) {
   const Stopwatch stopwatch;
   const ObservedFrame observed{association_, points_, frame.color ? &*frame.color : nullptr,
-                               static_cast<float>(config_.max_radius_m)};
+                               static_cast<float>(config_.max_radius_m), static_cast<float>(1.0 / config_.max_stretch)};
   executor.parallel_for(association_.groups.size(), SurfelAssociation::kGroupsPerTask,
                         [&](std::size_t begin, std::size_t end) {
                           for (std::size_t g = begin; g < end; ++g) {

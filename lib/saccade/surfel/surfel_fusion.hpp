@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
@@ -27,6 +28,9 @@ struct SurfelFusionConfig {
   double max_normal_angle_rad{0.8};
   double max_view_angle_rad{1.4};  ///< between normal and view; flatter views create no surfel
   double max_radius_m{0.05};
+  /// The slant of a surface enlarges its surfels at most this many times; 1: not at all. A flat view tells little of
+  /// the normal, and the rim of a large disc then stands off the surface.
+  double max_stretch{1000.0};
 
   /// Answers invalid_argument for values that are not finite or not positive, or angles of 90° and more.
   [[nodiscard]] Status validate() const;
@@ -57,7 +61,8 @@ struct SurfelFusionReport {
 /// One caller at a time. Neither threads nor simd_target() change a bit of the result.
 class SurfelFusion {
  public:
-  [[nodiscard]] static Result<SurfelFusion> create(const SurfelFusionConfig& config = {});
+  /// @param map  surfels of an earlier fusion with this configuration, which goes on as if it had never stopped
+  [[nodiscard]] static Result<SurfelFusion> create(const SurfelFusionConfig& config = {}, SurfelMap map = {});
 
   /// Fuses one frame. O(surfels + pixels).
   /// @return errors leave the map as it was: invalid_argument for a bad camera, or a pose that is missing or not
@@ -75,7 +80,7 @@ class SurfelFusion {
   [[nodiscard]] const SurfelAssociation& association() const { return association_; }
 
  private:
-  explicit SurfelFusion(const SurfelFusionConfig& config) : config_{config} {}
+  SurfelFusion(const SurfelFusionConfig& config, SurfelMap map) : config_{config}, map_{std::move(map)} {}
   /// Performs all of add_frame except integrate().
   [[nodiscard]] Result<SurfelFusionReport> associate(const Frame& frame, const PinholeCamera& camera,
                                                      const Executor& executor);

@@ -368,6 +368,9 @@ TEST(SurfelFusion, SaysWhyAFrameCannotBeFused) {
   SurfelFusionConfig config;
   config.image_sigma = 0.0;
   EXPECT_FALSE(SurfelFusion::create(config));
+  config = {};
+  config.max_stretch = 0.9;
+  EXPECT_FALSE(SurfelFusion::create(config));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST(SurfelRun, ShowsMoreWithEachView) {
   const double before = run.scan.measures.coverage.value();
   EXPECT_GT(before, 0.1);
   EXPECT_GT(run.final().coverage.value(), before + 0.1);
-  EXPECT_LT(run.final().accuracy_m.value(), 0.01);
+  EXPECT_LT(run.final().accuracy_m.value(), 0.002) << "discs stand off the surface";
   EXPECT_FALSE(run.final().unknown_near_objects);
   for (const ViewRecord& view : run.views) {
     EXPECT_GT(view.gain_predicted, 2.0);

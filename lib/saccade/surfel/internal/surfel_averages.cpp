@@ -45,6 +45,7 @@ struct View {
   BackProjection back_project;
   float focal;
   float max_radius_m;
+  float least_slope;
 };
 
 HWY_INLINE void average_discs(const View& view, Batch& batch, std::size_t i) {
@@ -54,7 +55,7 @@ HWY_INLINE void average_discs(const View& view, Batch& batch, std::size_t i) {
   const Vector p = back_projected(view.back_project, load(batch.u + i), load(batch.v + i), z);
   const Vector n_camera{load(batch.nx + i), load(batch.ny + i), load(batch.nz + i)};
   const Vector n = turned(view.back_project.R_world_camera, n_camera);
-  const V slope = hn::Max(hn::Abs(n_camera.z), set(1e-3F));
+  const V slope = hn::Max(hn::Abs(n_camera.z), set(view.least_slope));
   const V across = hn::Div(hn::Div(hn::Mul(set(std::numbers::sqrt2_v<float>), z), set(view.focal)), slope);
   const V radius_seen = hn::Min(across, set(view.max_radius_m));
 
@@ -133,7 +134,8 @@ HWY_INLINE void take_back(const Batch& batch, std::size_t k, SurfelId id, Surfel
 
 void average_kernel(const ObservedFrame& frame, std::span<const SurfelPixel> pixels, SurfelMap& map) {
   const View view{BackProjection{frame.seen},
-                  static_cast<float>(std::sqrt(frame.seen.camera.fx * frame.seen.camera.fy)), frame.max_radius_m};
+                  static_cast<float>(std::sqrt(frame.seen.camera.fx * frame.seen.camera.fy)), frame.max_radius_m,
+                  frame.least_slope};
   const std::size_t lanes = hn::Lanes(Tag{});
   Batch batch;
   for (std::size_t first = 0; first < pixels.size(); first += kBatch) {

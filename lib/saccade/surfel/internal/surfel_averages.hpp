@@ -18,6 +18,7 @@ struct ObservedFrame {
   const PointImage& points;
   const ColorImage* color;  ///< or nullptr
   float max_radius_m;
+  float least_slope;  ///< least cosine between normal and axis; a flatter surface's radii grow no further
 };
 
 /// Averages position, normal, radius and colour with weights; surfels from seen.first_new on begin with their pixel.
