@@ -6,16 +6,11 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "saccade/tracking/internal/icp_kernels.cpp"
 #include "saccade/core/simd_kernels.hpp"
+#include "saccade/tracking/internal/pair_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace saccade::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using Tag = hn::CappedTag<float, kPairLanes>;
-using IntTag = hn::RebindToSigned<Tag>;
-using V = hn::Vec<Tag>;
-using M = hn::Mask<Tag>;
 
 /// Measured points of kPairLanes neighbouring columns.
 struct Block {
@@ -25,43 +20,23 @@ struct Block {
   const float* nz;
 };
 
-HWY_INLINE V set(float value) { return hn::Set(Tag{}, value); }
-
-HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
-  return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
-}
-
 HWY_INLINE V weight_of(V depth, V residual) {
-  const V beyond = hn::Max(hn::Sub(depth, set(DepthSigma::kFrom_m)), hn::Zero(Tag{}));
+  const V beyond = hn::Max(hn::Sub(depth, set(DepthSigma::kFrom_m)), hn::Zero(PairTag{}));
   const V sigma =
       hn::Add(set(DepthSigma::kNearest_m), hn::Mul(set(DepthSigma::kGrowth_per_m), hn::Mul(beyond, beyond)));
   const V linear_from = hn::Max(sigma, hn::Mul(hn::Abs(residual), set(1.0F / kHuberSigmas)));
   return hn::Div(set(1e-6F), hn::Mul(sigma, linear_from));
 }
 
-HWY_INLINE void add_to(float* sum, V value) {
-  const Tag d;
-  hn::Store(hn::Add(hn::Load(d, sum), value), d, sum);
-}
-
-template <class... Vs>
-HWY_INLINE void add_products(float* sums, V factor, Vs... others) {
-  ((add_to(sums, hn::Mul(factor, others)), sums += kPairLanes), ...);
-}
-
 /// Adds the pairs of one vector of pixels, from `lane` on in the block, with rays (ray_x, ray_y, 1). Returns their
 /// number.
 HWY_INLINE std::size_t add_vector(const PairingTask& task, const Block& block, int lane, V ray_x, V ray_y,
                                   PairSums& sums) {
-  const Tag d;
-  const IntTag di;
+  const PairTag d;
+  const PairIndexTag di;
   const V z = hn::LoadU(d, block.z + lane);
-  const V x_camera = hn::Mul(ray_x, z);
-  const V y_camera = hn::Mul(ray_y, z);
-  const std::array<float, 9>& R = task.R;
-  const V px = hn::Add(dot(set(R[0]), set(R[1]), set(R[2]), x_camera, y_camera, z), set(task.t[0]));
-  const V py = hn::Add(dot(set(R[3]), set(R[4]), set(R[5]), x_camera, y_camera, z), set(task.t[1]));
-  const V pz = hn::Add(dot(set(R[6]), set(R[7]), set(R[8]), x_camera, y_camera, z), set(task.t[2]));
+  const PairPoint p = moved(task.R, task.t, ray_x, ray_y, z);
+  const auto& [px, py, pz] = p;
 
   // The model's pixel.
   const V inverse_z = hn::Div(set(1.0F), pz);
@@ -91,6 +66,7 @@ HWY_INLINE std::size_t add_vector(const PairingTask& task, const Block& block, i
   const V nz = hn::GatherIndex(d, task.model.nz, index);
 
   // The angle between normals: n in the camera's frame against the measured one.
+  const std::array<float, 9>& R = task.R;
   const V nx_camera = dot(set(R[0]), set(R[3]), set(R[6]), nx, ny, nz);
   const V ny_camera = dot(set(R[1]), set(R[4]), set(R[7]), nx, ny, nz);
   const V nz_camera = dot(set(R[2]), set(R[5]), set(R[8]), nx, ny, nz);
@@ -101,16 +77,7 @@ HWY_INLINE std::size_t add_vector(const PairingTask& task, const Block& block, i
 
   const V r = dot(nx, ny, nz, dx, dy, dz);
   const V w = hn::IfThenElseZero(pair, weight_of(z, r));
-  const V j0 = hn::Sub(hn::Mul(py, nz), hn::Mul(pz, ny));
-  const V j1 = hn::Sub(hn::Mul(pz, nx), hn::Mul(px, nz));
-  const V j2 = hn::Sub(hn::Mul(px, ny), hn::Mul(py, nx));
-  const auto at = [&sums, lane](std::size_t product) HWY_ATTR { return sums.products[product].data() + lane; };
-  add_products(at(0), hn::Mul(w, j0), j0, j1, j2, nx, ny, nz, r);
-  add_products(at(7), hn::Mul(w, j1), j1, j2, nx, ny, nz, r);
-  add_products(at(13), hn::Mul(w, j2), j2, nx, ny, nz, r);
-  add_products(at(18), hn::Mul(w, nx), nx, ny, nz, r);
-  add_products(at(22), hn::Mul(w, ny), ny, nz, r);
-  add_products(at(25), hn::Mul(w, nz), nz, r);
+  add_pairs(sums.products, lane, w, p, nx, ny, nz, r);
   add_to(sums.squared_residuals.data() + lane, hn::IfThenElseZero(pair, hn::Mul(r, r)));
   return hn::CountTrue(d, pair);
 }
@@ -129,7 +96,7 @@ struct Tail {
 };
 
 void linearize(const PairingTask& task, int begin, int end, PairSums& sums) {
-  const Tag d;
+  const PairTag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const LevelPoints& points = task.measured;
   const V inverse_fx = set(task.inverse_fx);
