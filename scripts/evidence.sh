@@ -148,22 +148,24 @@ step attention build/release/saccade --quiet compare --scenes tabletop-1,tableto
 step attention_clutter build/release/saccade --quiet compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle \
   --robot comau --seeds 1 --max-views 5 --out "$out/attention_clutter" --json "$out/attention_clutter.json"
 
-echo "Published protocols: stand-ins, and the meshes that are there; figures go to docs/guides/benchmark.md"
+echo "Published protocols: stand-ins, and the meshes that are there, on Slurm where it answers; figures go to docs/guides/benchmark.md"
+protocol() {  # NAME PROTOCOL OPTIONS…
+  local name="$1"
+  shift
+  step "$name" scripts/evidence_campaign.py build/release/saccade "$out/$name" benchmark "$@" --seeds 1-3
+}
 for protocol in view-sphere one-shot tabletop-arm household; do
-  step "benchmark_$protocol" build/release/saccade --quiet benchmark "$protocol" --seeds 1-3 --out "$out/benchmark_$protocol" \
-    --json "$out/benchmark_$protocol.json"
+  protocol "benchmark_$protocol" "$protocol"
 done
 if [[ -d $data/meshes_stanford ]]; then
   for protocol in view-sphere one-shot; do
-    step "benchmark_${protocol}_stanford" build/release/saccade --quiet benchmark "$protocol" --objects "$data/meshes_stanford" --seeds 1-3 \
-      --out "$out/benchmark_${protocol}_stanford" --json "$out/benchmark_${protocol}_stanford.json"
+    protocol "benchmark_${protocol}_stanford" "$protocol" --objects "$data/meshes_stanford"
   done
 else
   echo "  without the Armadillo and the Bunny, $data/meshes_stanford is not there"
 fi
 if [[ -d $data/meshes_ycb ]]; then
-  step benchmark_ycb build/release/saccade --quiet benchmark household --objects "$data/meshes_ycb" --seeds 1-3 --out "$out/benchmark_ycb" \
-    --json "$out/benchmark_ycb.json"
+  protocol benchmark_ycb household --objects "$data/meshes_ycb"
 fi
 
 echo "The planner beside the oracle, baselines and sphere; figures go to docs/results/planner.md"

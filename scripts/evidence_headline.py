@@ -13,14 +13,13 @@ import math
 import os
 import pathlib
 import shlex
-import shutil
 import statistics
 import subprocess
 import sys
 
+from evidence_campaign import INTERRUPTED, STILL_QUEUED, cluster_answers, slurm_options
 from evidence_planner import Figures, Held, calibration, student_t
 
-INTERRUPTED = (129, 130, 143)  # exit statuses of saccade
 SCENES = 100
 SEEDS = 10
 STRATEGIES = ("surface", "oracle", "sphere", "standard", "attention")
@@ -32,12 +31,6 @@ FIGURES = (("coverage", "coverage, %", 100, 1), ("coverage_area", "its area, %",
 def options(kind, seeds):
     return ["--scenes", f"clutter:201-{200 + SCENES}", "--strategies", ",".join(STRATEGIES), "--seeds",
             f"1-{seeds}" if seeds > 1 else "1", "--max-views", "5", *CAMPAIGNS[kind][1]]
-
-
-def cluster_answers():
-    if os.environ.get("SACCADE_SLURM") == "off" or not shutil.which("sbatch"):
-        return False
-    return subprocess.run(["sinfo", "--noheader"], capture_output=True, check=False).returncode == 0
 
 
 def compare(program, folder, arguments):
@@ -58,9 +51,8 @@ def run(program, folder, kind, seeds):
     merged = not (folder / "campaign/shards").is_dir() or compare(program, folder, [*options(kind, seeds), "--merge"])
     if not merged or missing(folder, seeds) == 0:
         return merged
-    submitted = compare(program, folder, [*options(kind, seeds), "--slurm",
-                                          *shlex.split(os.environ.get("SACCADE_SLURM_OPTIONS", ""))])
-    return submitted or (folder / "log.txt").read_text().rstrip().splitlines()[-1].find("still queued or running") >= 0
+    submitted = compare(program, folder, [*options(kind, seeds), "--slurm", *slurm_options()])
+    return submitted or STILL_QUEUED in (folder / "log.txt").read_text().rstrip().splitlines()[-1]
 
 
 def missing(folder, seeds):

@@ -2,30 +2,13 @@
 // saccade benchmark: published protocols of view planning, each a campaign as of `saccade compare`, with published
 // figures beside ours.
 #include <algorithm>
-#include <set>
-#include <sstream>
 
 #include "benchmark_output.hpp"
-#include "compare_report.hpp"
 #include "compare_run.hpp"
-#include "compare_slices.hpp"
-#include "server/report_file.hpp"
+#include "saccade/core/nearest_word.hpp"
 
 namespace saccade::cli {
 namespace {
-
-using nlohmann::json;
-
-constexpr const char* kBenchmarkPage{"index.html"};
-
-struct BenchmarkOptions {
-  std::string name;
-  std::string objects;
-  std::string strategies;
-  std::string seeds{"1"};
-  std::string only;
-  std::size_t jobs{0};
-};
 
 /// The strategies of the program, and ours in its form that plans once.
 Planners benchmark_planners(const Planners& planners) {
@@ -34,26 +17,26 @@ Planners benchmark_planners(const Planners& planners) {
   return all;
 }
 
+/// "figure" of "figure@12".
+std::string object_of(const Scene& scene) { return scene.name.substr(0, scene.name.find('@')); }
+
 /// Leaves the named objects, with all their first views. invalid_argument for one that is not there.
-Status keep_only(BenchmarkPlan& plan, const std::string& list) {
+Status keep_only(BenchmarkPlan& plan, const std::vector<std::string>& wanted) {
   std::vector<std::string> objects;
   for (const Scene& scene : plan.scenes) {
-    const std::string object = scene.name.substr(0, scene.name.find('@'));
-    if (objects.empty() || objects.back() != object) objects.push_back(object);
+    std::string object = object_of(scene);
+    if (objects.empty() || objects.back() != object) objects.push_back(std::move(object));
   }
-  std::set<std::string> wanted;
-  std::istringstream parts{list};
-  for (std::string part; std::getline(parts, part, ',');) {
-    if (std::find(objects.begin(), objects.end(), part) == objects.end()) {
-      return Error{Errc::invalid_argument,
-                   "there is no object \"" + part + "\"; there are " +
-                       joined(objects, ", ", [](const std::string& name) { return name; }),
-                   "--only"};
-    }
-    wanted.insert(part);
+  for (const std::string& name : wanted) {
+    if (std::find(objects.begin(), objects.end(), name) != objects.end()) continue;
+    const std::vector<std::string_view> known{objects.begin(), objects.end()};
+    return Error{Errc::invalid_argument,
+                 "there is no object \"" + name + "\"; there are " + joined(objects) + did_you_mean(name, known),
+                 "--only"};
   }
-  std::erase_if(plan.scenes,
-                [&](const Scene& scene) { return wanted.count(scene.name.substr(0, scene.name.find('@'))) == 0; });
+  std::erase_if(plan.scenes, [&](const Scene& scene) {
+    return std::find(wanted.begin(), wanted.end(), object_of(scene)) == wanted.end();
+  });
   return {};
 }
 
@@ -82,61 +65,78 @@ Result<std::vector<MeasuredRun>> measure_runs(Context& context, const Benchmark&
   return measured;
 }
 
+/// Whether the command line says more than the command.
+bool says_more(const CLI::App& command) {
+  const std::vector<const CLI::Option*> options = command.get_options();
+  return std::any_of(options.begin(), options.end(), [](const CLI::Option* option) { return option->count() > 0; });
+}
+
 class BenchmarkCommand final : public Command {
  public:
+  BenchmarkCommand() {
+    compare_.seed_list = "1";
+    compare_.strategy_list.clear();
+  }
+
   [[nodiscard]] CommandInfo info() const override {
     return {"benchmark", "runs published protocols of view planning, with published figures beside ours"};
   }
 
   void declare(Options& options) override {
-    options.value("name", given_.name, "NAME", "protocol; without it they are listed");
-    options.folder({.help = "folder for the results; runs that are in it already are not repeated",
-                    .files = {},
-                    .marker = kCampaignFile,
-                    .opened_by_command = true});
+    options.value("name", name_, "NAME", "protocol; without it they are listed");
+    options.folder(campaign_folder());
     request_ = &options.request();
-    options.value("--objects", given_.objects, "DIR",
+    options.value("--objects", objects_, "DIR",
                   "folder with the protocol's meshes, which are checked by their MD5; without it stand-ins are made");
-    options.value("--strategies", given_.strategies, "LIST",
+    options.value("--strategies", compare_.strategy_list, "LIST",
                   "strategies instead of the protocol's, separated by commas; the first is set beside published "
                   "figures. surface-one-shot chooses all views at once");
-    options.value("--only", given_.only, "LIST", "objects instead of all of the protocol's, separated by commas");
-    options.value("--seeds", given_.seeds, "LIST", "seeds of noise and chance, each makes one run: 1-10,15");
-    options
-        .value("--jobs", given_.jobs, "N",
-               "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
-        .range(1, 256);
+    options.value("--only", only_, "LIST", "objects instead of all of the protocol's, separated by commas");
+    add_campaign_options(options.group(), compare_);
+    command_ = &options.group();
   }
 
   void check(const GlobalOptions& global) override {
-    if (given_.name.empty()) return;
-    const Result<Benchmark> found = find_benchmark(given_.name);
+    if (name_.empty()) {
+      if (says_more(*command_)) {
+        usage_error("name", "a protocol is needed: " + joined(benchmarks(), ", ", &Benchmark::name));
+      }
+      return;
+    }
+    require_values();
+    const Result<Benchmark> found = find_benchmark(name_);
     if (!found) usage_error("name", found.error().message);
     if (request_->path.empty()) usage_error("--out", "a folder for the results is needed");
     benchmark_ = *found;
-    compare_.seeds = parse_seeds(given_.seeds);
-    const Planners planners = benchmark_planners(global.planners);
-    std::string names = given_.strategies;
-    if (names.empty()) {
-      for (const std::string& name : benchmark_.strategies) names += (names.empty() ? "" : ",") + name;
-    }
-    compare_.strategies = parse_strategies(names, planners);
-    compare_.jobs = given_.jobs;
+    if (!only_.empty()) wanted_ = list_parts("--only", only_);
+    check_campaign_options(compare_);
+    const std::string names = compare_.strategy_list.empty() ? joined(benchmark_.strategies, ",") : compare_.strategy_list;
+    compare_.strategies = parse_strategies(names, benchmark_planners(global.planners));
     compare_.robot = benchmark_.robot;
   }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
-    if (given_.name.empty()) return Outcome{.result = benchmark_list_json(), .text = benchmark_list()};
+    if (name_.empty()) return Outcome{.result = benchmark_list_json(), .text = benchmark_list()};
     std::optional<std::filesystem::path> objects;
-    if (!given_.objects.empty()) objects = given_.objects;
+    if (!objects_.empty()) objects = objects_;
     SACCADE_TRY(BenchmarkPlan plan, plan_benchmark(benchmark_, objects));
-    if (!given_.only.empty()) SACCADE_CHECK(keep_only(plan, given_.only));
+    if (!wanted_.empty()) SACCADE_CHECK(keep_only(plan, wanted_));
     SACCADE_TRY(const Comparison comparison, Comparison::create(options_for(context, plan), plan.scenes));
-    SACCADE_TRY(const ComparisonRun done, run_comparison(context, comparison));
-    return report(context, plan, comparison, done);
+    return run_campaign(context, comparison,
+                        [&](const Campaign& campaign, const ComparedRuns& compared, nlohmann::json& result) {
+                          return report(context, plan, comparison, campaign, compared, result);
+                        });
   }
 
  private:
+  /// An option that is empty, as that of a variable which is not set, must not mean that it was not given.
+  void require_values() const {
+    for (const auto& [option, value] :
+         {std::pair{"--objects", &objects_}, {"--strategies", &compare_.strategy_list}, {"--only", &only_}}) {
+      if (value->empty() && command_->count(option) > 0) usage_error(option, "needs a value");
+    }
+  }
+
   CompareOptions options_for(const Context& context, const BenchmarkPlan& plan) const {
     CompareOptions options = compare_;
     options.out = context.out();
@@ -147,41 +147,25 @@ class BenchmarkCommand final : public Command {
     return options;
   }
 
-  Result<Outcome> report(Context& context, const BenchmarkPlan& plan, const Comparison& comparison,
-                         const ComparisonRun& done) const {
-    context.lap("runs");
-    SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(done.campaign, done.found));
+  /// What the protocol measures, beside published figures.
+  Result<std::string> report(Context& context, const BenchmarkPlan& plan, const Comparison& comparison,
+                             const Campaign& campaign, const ComparedRuns& compared, nlohmann::json& result) const {
     std::vector<MeasuredRun> measured;
     if (benchmark_.rule) {
-      SACCADE_TRY(measured, measure_runs(context, benchmark_, comparison, done.campaign, runs));
+      SACCADE_TRY(measured, measure_runs(context, benchmark_, comparison, campaign, compared.runs));
+      context.lap("measuring");
     }
-    context.lap("measuring");
-    const std::size_t finished = runs.size();
-    const ComparedRuns results = compared(std::move(runs), comparison.budget());
-    const std::vector<BenchmarkRow> table = benchmark_table(benchmark_, measured, results);
-    const RunFolder& out = *context.folder();
-    SACCADE_CHECK(write_comparison(out.path(), results));
-    SACCADE_CHECK(write_benchmark(out.path(), benchmark_, plan, table, measured));
-    context.lap("tables");
-    json result = comparison_json(results);
+    const std::vector<BenchmarkRow> table = benchmark_table(benchmark_, measured, compared);
+    SACCADE_CHECK(write_benchmark(context.out(), benchmark_, plan, table, measured));
     result["benchmark"] = benchmark_json(benchmark_, plan, table);
-    result["out"] = out.path().string();
-    result["robot"] = comparison.robot_name();
-    result["max_views"] = results.budget;
-    result["seeds"] = comparison.options().seeds;
-    result["runs"] = {{"planned", done.planned}, {"done", finished}, {"done_now", done.now}};
-    result["interrupted"] = finished < done.planned;
-    std::string text = benchmark_text(benchmark_, plan, table);
-    text += "runs      " + std::to_string(done.now) + " done now, " + std::to_string(finished - done.now) + " found\n";
-    text += "report    " + (out / kBenchmarkPage).string() + '\n';
-    Outcome outcome{.result = std::move(result), .text = std::move(text)};
-    SACCADE_CHECK(server::write_report(out / kBenchmarkPage, context.document(outcome.result),
-                                       comparison_details(comparison, results)));
-    outcome.cut_short = cut_short(context, finished, done.planned);
-    return outcome;
+    return benchmark_text(benchmark_, plan, table);
   }
 
-  BenchmarkOptions given_;
+  std::string name_;
+  std::string objects_;
+  std::string only_;
+  std::vector<std::string> wanted_;  ///< parts of only_
+  const CLI::App* command_{nullptr};
   const FolderRequest* request_{nullptr};
   Benchmark benchmark_;
   CompareOptions compare_;

@@ -3,9 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 #include <set>
@@ -16,27 +13,11 @@
 namespace saccade::cli {
 namespace {
 
-/// The parts between commas. Throws a usage error when one of them is empty.
-std::vector<std::string> parts_of(const std::string& option, const std::string& text) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  while (true) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    if (end == begin) usage_error(option, "needs a list without gaps, such as a,b, not '" + text + "'");
-    std::string part = text.substr(begin, end - begin);
-    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(std::move(part));
-    if (end == text.size()) return parts;
-    begin = end + 1;
-  }
-}
-
 std::optional<std::uint64_t> seed_of(std::string_view text) {
-  std::uint64_t seed = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), seed);
   // The campaign file keeps seeds as signed numbers.
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  if (code != std::errc{} || end != text.data() + text.size() || seed > kLargest) return std::nullopt;
-  return seed;
+  const std::optional<std::uint64_t> seed = whole_number(text);
+  return seed && *seed <= kLargest ? seed : std::nullopt;
 }
 
 constexpr std::uint64_t kMostInRange{100000};
@@ -59,7 +40,7 @@ void add_once(std::vector<std::string>& names, std::string name) {
 
 std::vector<std::string> scenes_of(const std::string& text) {
   std::vector<std::string> names;
-  for (const std::string& part : parts_of("--scenes", text)) {
+  for (const std::string& part : list_parts("--scenes", text)) {
     if (part == "all") {
       for (const BuiltinScene& builtin : builtin_scenes()) add_once(names, std::string{builtin.name});
     } else if (part.starts_with(kClutter) && part.find('-') != std::string::npos) {
@@ -91,83 +72,17 @@ std::vector<NamedPlanner> strategies_of(const CompareOptions& options, const Pla
 
 std::vector<std::string> noises_of(const CompareOptions& options) {
   if (options.noise_list.empty()) return {noise_key(options.run.run)};
-  std::vector<std::string> noises = parts_of("--noise", options.noise_list);
+  std::vector<std::string> noises = list_parts("--noise", options.noise_list);
   for (const std::string& noise : noises) {
     if (!kNoiseNames.find(noise)) usage_error("--noise", unknown_word(noise, kNoiseNames.words));
   }
   return noises;
 }
 
-/// Options for several machines.
-void add_machine_options(CLI::App& command, CompareOptions& options) {
-  add_value(command, "--shard", options.slice_text, "I/N",
-            "run slice I of N alone, from 0/N to N-1/N, into a file of its own below DIR/shards; auto/N takes I from "
-            "SLURM_ARRAY_TASK_ID, or from the rank of mpirun");
-  command.add_flag("--status", options.status, "say how far the slices are, and run nothing");
-  const auto take = [&options](const std::vector<std::string>& given) {
-    options.merge = true;
-    for (const std::string& folder : given) {
-      if (!folder.empty() && folder != "true") options.merged.emplace_back(folder);
-    }
-  };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--merge", take, "add what the slices have done to the campaign, of all shards of DIR or of these folders")
-      ->expected(0, -1)
-      ->type_name("[FOLDER...]");
-  command.add_flag("--slurm", options.slurm,
-                   "submit the runs that are missing as a job array of Slurm, and a merge after it");
-  command.add_flag("--dry-run", options.job.dry_run, "show the script of --slurm, and submit nothing")
-      ->needs("--slurm");
-  add_value(command, "--partition", options.job.partition, "NAME", "partition of the job array")->needs("--slurm");
-  add_value(command, "--time", options.job.time, "LIMIT", "time limit of a task, as sbatch takes it: 2:00:00, 1-12")
-      ->needs("--slurm");
-  add_value(command, "--cpus", options.job.cpus, "N", "processors of a task, which become its --threads")
-      ->needs("--slurm")
-      ->check(CLI::Range(1, 4096));
-  add_value(command, "--tasks", options.job.tasks, "N", "slices (default: one per run, at most 100)")
-      ->needs("--slurm")
-      ->check(CLI::Range(std::size_t{1}, static_cast<std::size_t>(kMostInRange)));
-}
-
-/// A word that is put into a script as it is.
-void require_word(const std::string& option, const std::string& text) {
-  constexpr std::string_view kPlain{"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._:,-"};
-  if (text.find_first_not_of(kPlain) != std::string::npos) {
-    usage_error(option, "takes letters, digits and . _ : , - only, not '" + text + "'");
-  }
-}
-
-void check_machine_options(CompareOptions& options) {
-  if (!options.slice_text.empty()) options.slice = parse_slice(options.slice_text);
-  const std::array chosen{std::pair{options.list, "--list"}, std::pair{options.slice.has_value(), "--shard"},
-                          std::pair{options.status, "--status"}, std::pair{options.merge, "--merge"},
-                          std::pair{options.slurm, "--slurm"}};
-  const char* first = nullptr;
-  for (const auto& [given, name] : chosen) {
-    if (!given) continue;
-    if (first != nullptr) usage_error(name, std::string{"cannot be given with "} + first);
-    first = name;
-  }
-  require_word("--partition", options.job.partition);
-  require_word("--time", options.job.time);
-}
-
-}  // namespace
-
-std::vector<NamedPlanner> parse_strategies(const std::string& text, const Planners& planners) {
-  std::vector<NamedPlanner> strategies;
-  for (const std::string& name : parts_of("--strategies", text)) {
-    const auto strategy = planners.find(name);
-    if (!strategy) usage_error("--strategies", strategy.error().message);
-    strategies.push_back(*strategy);
-  }
-  return strategies;
-}
-
+/// "1-10,15": seeds and ranges of them, sorted, each once. Throws a usage error of --seeds.
 std::vector<std::uint64_t> parse_seeds(const std::string& text) {
   std::set<std::uint64_t> seeds;
-  for (const std::string& part : parts_of("--seeds", text)) {
+  for (const std::string& part : list_parts("--seeds", text)) {
     const auto range = seed_range(part);
     if (!range) {
       usage_error("--seeds", "needs whole numbers and ranges of them below 2^63, such as 1-10,15, not '" + text + "'");
@@ -181,33 +96,29 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
   return {seeds.begin(), seeds.end()};
 }
 
-Slice parse_slice(const std::string& text) {
-  // Ranks and task numbers, all from 0. A task of an array may be started by an MPI of its own, so its number comes
-  // first.
-  constexpr std::array kNumbers{"SLURM_ARRAY_TASK_ID", "OMPI_COMM_WORLD_RANK", "PMI_RANK", "JOB_COMPLETION_INDEX"};
-  const std::size_t slash = text.find('/');
-  std::string index = text.substr(0, slash);
-  if (index == "auto") {
-    for (const char* name : kNumbers) {
-      const char* value = std::getenv(name);
-      if (value == nullptr) continue;
-      index = value;
-      break;
-    }
-    if (index == "auto") {
-      usage_error("--shard", "found no number of a task in the environment: none of " +
-                                 joined(kNumbers, ", ", [](const char* name) { return std::string{name}; }) +
-                                 " is set; name the slice, such as 0/10");
-    }
+}  // namespace
+
+std::vector<std::string> list_parts(const std::string& option, const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (end == begin) usage_error(option, "needs a list without gaps, such as a,b, not '" + text + "'");
+    std::string part = text.substr(begin, end - begin);
+    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(std::move(part));
+    if (end == text.size()) return parts;
+    begin = end + 1;
   }
-  const auto number = seed_of(index);
-  const auto count = slash == std::string::npos ? std::nullopt : seed_of(std::string_view{text}.substr(slash + 1));
-  if (!number || !count || *number >= *count || *count > kMostInRange) {
-    usage_error("--shard",
-                "needs a slice and the number of slices, the first of ten being 0/10 and the last 9/10, not '" +
-                    (index == text.substr(0, slash) ? text : index + text.substr(slash)) + "'");
+}
+
+std::vector<NamedPlanner> parse_strategies(const std::string& text, const Planners& planners) {
+  std::vector<NamedPlanner> strategies;
+  for (const std::string& name : list_parts("--strategies", text)) {
+    const auto strategy = planners.find(name);
+    if (!strategy) usage_error("--strategies", strategy.error().message);
+    strategies.push_back(*strategy);
   }
-  return {static_cast<std::size_t>(*number), static_cast<std::size_t>(*count)};
+  return strategies;
 }
 
 std::string noise_key(const SimulatedRunConfig& run) {
@@ -220,6 +131,19 @@ void set_noise(SimulatedRunConfig& run, const std::string& name) {
   run.sensor = sensor.value_or(run.sensor);
 }
 
+void add_campaign_options(CLI::App& command, CompareOptions& options) {
+  add_value(command, "--seeds", options.seed_list, "LIST", "seeds of noise and chance, each makes one run: 1-10,15");
+  add_value(command, "--jobs", options.jobs, "N",
+            "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
+      ->check(CLI::Range(1, 256));
+  add_machine_options(command, options.machines);
+}
+
+void check_campaign_options(CompareOptions& options) {
+  options.seeds = parse_seeds(options.seed_list);
+  check_machine_options(options.machines);
+}
+
 void add_compare_options(CLI::App& command, CompareOptions& options, const Planners& planners) {
   add_value(command, "--scenes", options.scene_list, "LIST",
             "scenes, separated by commas: built-in ones or all of them (all), clutter:SEED, clutter:1-30, YAML files, "
@@ -227,7 +151,6 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
       ->required();
   add_value(command, "--strategies", options.strategy_list, "LIST",
             "strategies, separated by commas: " + planners.names());
-  add_value(command, "--seeds", options.seed_list, "LIST", "seeds of noise and chance, each makes one run: 1-10,15");
   add_run_options(command, options.run, min_gain_by_strategy());
   add_foresight_options(command, options.run);
   add_value(command, "--noise", options.noise_list, "LIST",
@@ -238,23 +161,18 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
             "carrier of the camera: free, which flies, comau, or a URDF file");
   add_reading_options(command, options.arm_reading);
   add_mesh_options(command, options.mesh);
-  add_value(command, "--jobs", options.jobs, "N",
-            "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
-      ->check(CLI::Range(1, 256));
   command.add_flag("--equal-views", options.equal_views,
                    "give every other strategy as many views as sphere took, instead of --max-views");
-  command.add_flag("--list", options.list, "list the runs, and run nothing");
-  add_machine_options(command, options);
+  add_campaign_options(command, options);
 }
 
 void check_compare_options(CompareOptions& options, const Planners& planners) {
   options.scenes = scenes_of(options.scene_list);
   options.strategies = strategies_of(options, planners);
-  options.seeds = parse_seeds(options.seed_list);
+  check_campaign_options(options);
   require_ok(options.mesh.validate(), "--mesh-scale");
   check_run_options(options.run);
   options.noises = noises_of(options);  // after the camera, whose noise is the default
-  check_machine_options(options);
   check_foresight(options.run, options.robot);
   check_arm_options(options.arm_reading);
   if (options.robot == "free") require_no_reading(options.arm_reading);

@@ -1,12 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare_run.hpp"
 
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
 #include "compare_jobs.hpp"
-#include "compare_slices.hpp"
+#include "compare_report.hpp"
+#include "compare_shards.hpp"
+#include "compare_slurm.hpp"
+#include "server/report_file.hpp"
 
 namespace saccade::cli {
+namespace {
 
-Result<ComparisonRun> run_comparison(Context& context, const Comparison& comparison) {
+using nlohmann::json;
+
+constexpr const char* kReportFile{"index.html"};
+
+json planned_json(const Comparison& comparison, const PlannedRun& run) {
+  const ComparedScene& scene = comparison.scenes()[run.scene];
+  return {{"scene", scene.name}, {"scene_hash", scene.hash}, {"strategy", run.strategy.name},
+          {"noise", run.noise},  {"seed", run.seed},         {"max_views", optional_json(run.max_views)},
+          {"found", run.found}};
+}
+
+/// Width of a column that holds all of some names, and a gap.
+template <class Items, class Name>
+int column_width(const Items& items, const Name& name) {
+  std::size_t width = 0;
+  for (const auto& item : items) width = std::max(width, std::invoke(name, item).size());
+  return static_cast<int>(width) + 2;
+}
+
+/// Writes nothing, and makes no folder.
+Result<Outcome> list_runs(const Comparison& comparison) {
+  SACCADE_TRY(const CampaignIndex done, done_in(comparison.options().out, {}));
+  const std::vector<PlannedRun> runs = comparison.plan(done);
+  json rows = json::array();
+  std::ostringstream text;
+  text << std::left;
+  const int scene_width = column_width(comparison.scenes(), &ComparedScene::name);
+  const int strategy_width = column_width(runs, [](const PlannedRun& run) { return run.strategy.name; });
+  for (const PlannedRun& run : runs) {
+    rows.push_back(planned_json(comparison, run));
+    text << std::setw(scene_width) << comparison.scenes()[run.scene].name << std::setw(strategy_width)
+         << run.strategy.name << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed
+         << (run.max_views ? std::to_string(*run.max_views) + " views at most" : "as many views as sphere takes")
+         << (run.found ? ", done" : "") << '\n';
+  }
+  const auto found = std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; });
+  text << runs.size() << " runs, " << found << " of them done\n";
+  return Outcome{.result = {{"runs", std::move(rows)}}, .text = text.str()};
+}
+
+/// A campaign, and what was done for it now.
+struct CampaignState {
+  Campaign campaign;
+  CampaignIndex found;     ///< all its runs
+  std::size_t planned{0};  ///< runs of the comparison
+  json now;                ///< {done_now}, or after a merge {merged_now, known, shards}
+};
+
+/// Runs what is missing, on this machine.
+Result<CampaignState> run_here(Context& context, const Comparison& comparison) {
   SACCADE_CHECK(context.open_folder());
   SACCADE_TRY(Campaign campaign, Campaign::open(*context.folder() / kCampaignFile));
   for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
@@ -16,13 +73,98 @@ Result<ComparisonRun> run_comparison(Context& context, const Comparison& compari
   const std::vector<PlannedRun> plan = comparison.plan(found);
   SACCADE_TRY(const std::size_t now,
               run_missing(comparison, plan, found, campaign, context.executor().threads(), context.bar()));
-  return ComparisonRun{std::move(campaign), std::move(found), now, plan.size()};
+  return CampaignState{std::move(campaign), std::move(found), plan.size(), {{"done_now", now}}};
 }
 
-std::string cut_short(const Context& context, std::size_t done, std::size_t planned) {
-  if (done >= planned) return {};
-  return "interrupted after " + std::to_string(done) + " of " + std::to_string(planned) + " runs; they are in " +
-         context.out().string() + "; the same command goes on from there";
+Result<CampaignState> merge_here(Context& context, const Comparison& comparison) {
+  SACCADE_TRY(const std::vector<std::filesystem::path> shards, shards_to_merge(comparison.options()));
+  std::optional<Campaign> campaign;
+  const auto open = [&]() -> Result<const Campaign*> {
+    SACCADE_CHECK(context.open_folder());
+    SACCADE_TRY(campaign, Campaign::open(*context.folder() / kCampaignFile));
+    return &*campaign;
+  };
+  SACCADE_TRY(const CampaignMerge merged, merge_shards(comparison, shards, open));
+  CampaignIndex found;
+  SACCADE_CHECK(found.add(*campaign));
+  const std::size_t planned = comparison.plan(found).size();
+  return CampaignState{std::move(*campaign),
+                       std::move(found),
+                       planned,
+                       {{"merged_now", merged.added}, {"known", merged.known}, {"shards", shards.size()}}};
+}
+
+json result_json(const Comparison& comparison, const CampaignState& state, const ComparedRuns& compared) {
+  const CompareOptions& options = comparison.options();
+  json result = comparison_json(compared);
+  result["out"] = options.out.string();
+  result["campaign"] = (options.out / kCampaignFile).string();
+  result["robot"] = comparison.robot_name();
+  result["max_views"] = compared.budget;
+  result["equal_views"] = options.equal_views;
+  result["seeds"] = options.seeds;
+  result["runs"] = {{"planned", state.planned}, {"done", compared.runs.size()}};
+  result["runs"].update(state.now);
+  result["interrupted"] = compared.runs.size() < state.planned;
+  return result;
+}
+
+/// The line of the text that says what was done now.
+std::string now_text(const CampaignState& state, std::size_t done) {
+  if (state.now.contains("done_now")) {
+    const auto now = state.now.at("done_now").get<std::size_t>();
+    return "runs      " + std::to_string(now) + " done now, " + std::to_string(done - now) + " found\n";
+  }
+  return "runs      " + state.now.at("merged_now").dump() + " merged now, " + state.now.at("known").dump() +
+         " known, " + std::to_string(done) + " of " + std::to_string(state.planned) + " in the campaign\n";
+}
+
+Result<Outcome> report(Context& context, const Comparison& comparison, const CampaignState& state,
+                       const ReportPart& part) {
+  const RunFolder& out = *context.folder();
+  context.lap("runs");
+  SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(state.campaign, state.found));
+  context.lap("read");
+  const ComparedRuns results = compared(std::move(runs), comparison.budget());
+  context.lap("statistics");
+  SACCADE_CHECK(write_comparison(out.path(), results));
+  context.lap("tables");
+  Outcome outcome{.result = result_json(comparison, state, results)};
+  SACCADE_TRY(outcome.text, part(state.campaign, results, outcome.result));
+  outcome.text += now_text(state, results.runs.size()) + "report    " + (out / kReportFile).string() + '\n';
+  if (std::filesystem::exists(out / kShardsFolder)) {
+    SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, comparison.plan(state.found)));
+    outcome.result["slices"] = slices_json(slices);
+  }
+  SACCADE_CHECK(server::write_report(out / kReportFile, context.document(outcome.result),
+                                     comparison_details(comparison, results)));
+  return outcome;
+}
+
+}  // namespace
+
+FolderOption campaign_folder() {
+  return {.help = "folder for the results; runs that are in it already are not repeated",
+          .files = {kShardsFolder, kLogsFolder},
+          .marker = kCampaignFile,
+          .opened_by_command = true};
+}
+
+Result<Outcome> run_campaign(Context& context, const Comparison& comparison, const ReportPart& part) {
+  const MachineOptions& machines = comparison.options().machines;
+  if (machines.list) return list_runs(comparison);
+  if (machines.status) return slice_status(comparison);
+  if (machines.slice) return run_slice(context, comparison);
+  if (machines.slurm) return submit_slices(context, comparison);
+  SACCADE_TRY(const CampaignState state,
+              machines.merge ? merge_here(context, comparison) : run_here(context, comparison));
+  SACCADE_TRY(Outcome outcome, report(context, comparison, state, part));
+  const auto done = outcome.result.at("runs").at("done").get<std::size_t>();
+  if (!machines.merge && done < state.planned) {
+    outcome.cut_short = "interrupted after " + std::to_string(done) + " of " + std::to_string(state.planned) +
+                        " runs; they are in " + context.out().string() + "; the same command goes on from there";
+  }
+  return outcome;
 }
 
 }  // namespace saccade::cli

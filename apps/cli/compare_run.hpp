@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// run_comparison: runs on this machine what the campaign of the folder lacks of a comparison.
+// run_campaign: does with the runs of a comparison what its options ask for, here or in slices, and reports them.
 
+#include <functional>
+#include <string>
+
+#include "compare_output.hpp"
 #include "comparison.hpp"
 #include "context.hpp"
 
 namespace saccade::cli {
 
-/// A comparison as far as it is done.
-struct ComparisonRun {
-  Campaign campaign;
-  CampaignIndex found;     ///< all runs of the campaign
-  std::size_t now{0};      ///< runs done now
-  std::size_t planned{0};  ///< runs of the comparison
-};
+/// The folder of a campaign, as commands declare it.
+[[nodiscard]] FolderOption campaign_folder();
 
-/// Opens the folder of --out, and does and stores the runs that are missing, until the user interrupts. Errors: those
-/// of Campaign::open and run_missing.
-[[nodiscard]] Result<ComparisonRun> run_comparison(Context& context, const Comparison& comparison);
+/// What a command adds to the report of a campaign: writes files of its own into the folder, adds to the result, and
+/// returns the text for people.
+using ReportPart = std::function<Result<std::string>(const Campaign& campaign, const ComparedRuns& compared,
+                                                     nlohmann::json& result)>;
 
-/// Says what an interruption left; empty where all runs are done.
-[[nodiscard]] std::string cut_short(const Context& context, std::size_t done, std::size_t planned);
+/// Does what one of MachineOptions asks for, and without any runs what the campaign in the folder of --out lacks, until
+/// the user interrupts. After runs and after a merge it writes the report of all runs of the comparison that the
+/// campaign has: tables, pictures, what `part` adds, and the page. Errors: those of Campaign, run_missing, run_slice,
+/// slice_status, merge_shards, submit_slices and `part`; io_failure.
+[[nodiscard]] Result<Outcome> run_campaign(Context& context, const Comparison& comparison, const ReportPart& part);
 
 }  // namespace saccade::cli

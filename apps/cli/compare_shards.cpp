@@ -65,7 +65,7 @@ Result<std::size_t> run_recorded(Context& context, const Comparison& comparison,
 
 Result<Outcome> run_slice(Context& context, const Comparison& comparison) {
   const CompareOptions& options = comparison.options();
-  const Slice slice = *options.slice;
+  const Slice slice = *options.machines.slice;
   const std::vector<std::string_view> own{kCampaignFile, kShardRecord};
   SACCADE_TRY(const RunFolder folder,
               RunFolder::open(shard_folder(options.out, slice), own, kShardRecord, context.force()));
@@ -168,14 +168,14 @@ Result<Outcome> slice_status(const Comparison& comparison) {
 
 Result<std::vector<fs::path>> shards_to_merge(const CompareOptions& options) {
   std::vector<fs::path> files;
-  if (options.merged.empty()) {
+  if (options.machines.merged.empty()) {
     files = shard_files(options.out);
     if (files.empty()) {
       return Error{Errc::not_found, "there are no shards to merge; --shard makes them, --merge FOLDER takes others",
                    (options.out / kShardsFolder).string()};
     }
   }
-  for (const fs::path& folder : options.merged) {
+  for (const fs::path& folder : options.machines.merged) {
     SACCADE_TRY(const std::vector<fs::path> found, campaign_files(folder));
     files.insert(files.end(), found.begin(), found.end());
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// `saccade compare` in slices: a slice into its shard, how far all are, and the merge.
+// Campaigns in slices: a slice into its shard, how far all are, and the merge.
 
 #include "compare_slices.hpp"
 #include "context.hpp"

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
 
+#include "options.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/files/value_io.hpp"
@@ -32,21 +32,15 @@ std::vector<std::size_t> part_numbers(const std::vector<PlannedRun>& plan, bool 
   return numbers;
 }
 
-std::optional<std::size_t> number_in(std::string_view text) {
-  std::size_t number = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return code == std::errc{} && end == text.data() + text.size() ? std::optional{number} : std::nullopt;
-}
-
 /// "2-of-10".
 std::optional<Slice> slice_of(const std::string& name) {
   constexpr std::string_view kOf{"-of-"};
   const std::size_t at = name.find(kOf);
   if (at == std::string::npos) return std::nullopt;
-  const auto index = number_in(std::string_view{name}.substr(0, at));
-  const auto count = number_in(std::string_view{name}.substr(at + kOf.size()));
+  const auto index = whole_number(std::string_view{name}.substr(0, at));
+  const auto count = whole_number(std::string_view{name}.substr(at + kOf.size()));
   if (!index || !count || *index >= *count) return std::nullopt;
-  return Slice{*index, *count};
+  return Slice{static_cast<std::size_t>(*index), static_cast<std::size_t>(*count)};
 }
 
 std::vector<fs::path> folders_in(const fs::path& folder) {

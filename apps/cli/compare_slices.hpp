@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Slices of a comparison, the shards that hold them, and how far each is.
+// Slices of a campaign, the shards that hold them, and how far each is.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>

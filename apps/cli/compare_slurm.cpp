@@ -108,9 +108,9 @@ Result<SliceJob> job_of(const Context& context, const Comparison& comparison, co
   job.out = fs::absolute(options.out).lexically_normal();
   job.work_folder = fs::current_path();
   job.name = job_name(job.out);
-  job.options = options.job;
+  job.options = options.machines.job;
   const std::size_t parts = count_parts(plan, options.equal_views);
-  job.slices = options.job.tasks == 0 ? std::clamp<std::size_t>(parts, 1, kMostTasks) : options.job.tasks;
+  job.slices = job.options.tasks == 0 ? std::clamp<std::size_t>(parts, 1, kMostTasks) : job.options.tasks;
   job.wanted = slices_to_do(plan, job.slices, options.equal_views);
   return job;
 }
@@ -193,7 +193,7 @@ std::string merge_script(const SliceJob& job) {
 Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
   const CompareOptions& options = comparison.options();
   const std::vector<fs::path> shards = shard_files(options.out);
-  if (options.job.dry_run) {
+  if (options.machines.job.dry_run) {
     SACCADE_TRY(const CampaignIndex found, done_in(options.out, shards));
     SACCADE_TRY(const SliceJob job, job_of(context, comparison, comparison.plan(found)));
     const std::string script = job.wanted.empty() ? std::string{"# all runs are done\n"} : array_script(job);

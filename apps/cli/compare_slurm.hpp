@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// `saccade compare --slurm`: the script of a job array, and its submission.
+// --slurm of campaigns: the script of a job array, and its submission.
 
 #include "compare_slices.hpp"
 #include "context.hpp"
@@ -11,7 +11,7 @@ namespace saccade::cli {
 struct SliceJob {
   std::string name;                    ///< for the job; each campaign has one
   std::filesystem::path program;       ///< absolute
-  std::vector<std::string> arguments;  ///< the comparison, but not where and how it runs
+  std::vector<std::string> arguments;  ///< the command, but not where and how it runs
   std::filesystem::path out;           ///< absolute
   std::filesystem::path work_folder;   ///< absolute; relative names in the arguments start there
   std::size_t slices{1};

@@ -48,11 +48,14 @@ void require_positive(double value, const std::string& option) {
   if (!(value > 0.0) || !std::isfinite(value)) usage_error(option, "must be a positive number");
 }
 
-std::string check_whole_number(const std::string& text) {
+std::optional<std::uint64_t> whole_number(std::string_view text) {
   std::uint64_t value{0};
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_one = code == std::errc{} && end == text.data() + text.size();
-  return is_one ? "" : "needs a whole number from 0 to 2^64 - 1, not '" + text + "'";
+  return code == std::errc{} && end == text.data() + text.size() ? std::optional{value} : std::nullopt;
+}
+
+std::string check_whole_number(const std::string& text) {
+  return whole_number(text) ? "" : "needs a whole number from 0 to 2^64 - 1, not '" + text + "'";
 }
 
 std::string unknown_word(const std::string& word, std::span<const std::string_view> known) {

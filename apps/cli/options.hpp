@@ -3,10 +3,12 @@
 // Options that several subcommands share: lists of numbers, boxes, polygons, and the camera.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -30,6 +32,8 @@ namespace saccade::cli {
 /// As usage_error, for the errors of a library check on values that came from options.
 void require_ok(const Status& status, const std::string& option);
 void require_positive(double value, const std::string& option);
+/// Returns the whole of the text as a number from 0 to 2⁶⁴ − 1; nullopt for any other text.
+[[nodiscard]] std::optional<std::uint64_t> whole_number(std::string_view text);
 /// For CLI::Option::check: what is wrong with the text, or nothing. CLI11 itself takes -1 for the largest number.
 [[nodiscard]] std::string check_whole_number(const std::string& text);
 

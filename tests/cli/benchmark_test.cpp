@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade benchmark: its list, its errors, and a small run that goes on after an end.
+// saccade benchmark: its list, its errors, and a small campaign that goes on after it was interrupted and killed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,20 +48,36 @@ TEST(BenchmarkCommand, SaysWhatIsWrong) {
   EXPECT_FALSE(fs::exists(out));
 }
 
-TEST(BenchmarkCommand, RunsAndGoesOnWhereItStopped) {
+TEST(BenchmarkCommand, InterruptedOrKilledItKeepsWhatWasDoneAndGoesOn) {
   if (kSanitized) GTEST_SKIP() << "its images have the size of the protocol's";
   const TempFolder folder;
   const fs::path out = folder / "out";
-  const auto with = [&](const std::string& strategies) {
-    return run_program({"benchmark", "household", "--only", "hare", "--strategies", strategies, "--out", out.string(),
-                        "--quiet", "--json", (folder / "result.json").string()});
-  };
-  const Outcome first = with("random");
-  ASSERT_EQ(first.status, 0) << first.err;
-  EXPECT_NE(first.out.find("STAND-INS"), std::string::npos) << first.out;
-  const Outcome second = with("random,random-contours");
-  ASSERT_EQ(second.status, 0) << second.err;
-  EXPECT_NE(second.out.find("1 done now, 1 found"), std::string::npos) << second.out;
+  const Arguments wanted{"benchmark", "household", "--only", "hare", "--strategies", "random,random-contours", "--jobs",
+                         "1",         "--out",     out.string()};
+  {
+    RunningProgram program{wanted};
+    ASSERT_TRUE(program.wait_for("hare, random-contours"));  // the first run is done
+    program.send(SIGINT);
+    const Outcome interrupted = program.finish();
+    EXPECT_EQ(interrupted.status, 130) << interrupted.err;
+    EXPECT_NE(interrupted.err.find("interrupted after 1 of 2 runs"), std::string::npos) << interrupted.err;
+    EXPECT_NE(interrupted.out.find("1 done now, 0 found"), std::string::npos) << interrupted.out;
+    EXPECT_EQ(runs_in(out).size(), 1U);
+    const nlohmann::json told = report_in(out / "index.html").at("record").at("result");
+    EXPECT_EQ(told.at("interrupted"), true);
+    EXPECT_EQ(told.at("benchmark").at("table").size(), 1U);  // what was done has been measured
+  }
+  {
+    RunningProgram program{wanted};
+    ASSERT_TRUE(program.wait_for("hare, random-contours"));
+    program.send(SIGKILL);
+    EXPECT_EQ(program.finish().status, -1);
+    EXPECT_EQ(runs_in(out).size(), 1U);
+  }
+  const Outcome last = run_program(wanted + Arguments{"--quiet", "--json", (folder / "result.json").string()});
+  ASSERT_EQ(last.status, 0) << last.err;
+  EXPECT_NE(last.out.find("STAND-INS"), std::string::npos) << last.out;
+  EXPECT_NE(last.out.find("1 done now, 1 found"), std::string::npos) << last.out;
 
   const nlohmann::json result = read_json(folder / "result.json")->at("result");
   EXPECT_EQ(result.at("runs").at("done"), 2);

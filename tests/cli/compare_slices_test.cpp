@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "campaign_bits.hpp"
 #include "compare_runs.hpp"
 #include "report_page.hpp"
 #include "saccade/io/files/sqlite_file.hpp"
@@ -11,27 +12,6 @@
 
 namespace saccade::test {
 namespace {
-
-/// A table of a campaign without its times, row by row and sorted; numbers with all their bits.
-std::vector<std::string> rows_of(const SqliteFile& file, const std::string& table, const std::string& from) {
-  auto names = SqliteStatement::prepare(file, "SELECT name FROM pragma_table_info('" + table + "')");
-  std::string columns{"''"};
-  while (*names->step()) {
-    const std::string name = names->text();
-    if (name == "id" || name == "run" || name == "seconds" || name == "finished_at" || name.ends_with("_ms")) continue;
-    columns += "||' '||quote(" + table + '.' + name + ')';
-  }
-  auto rows = SqliteStatement::prepare(file, "SELECT " + columns + " FROM " + from);
-  std::vector<std::string> all;
-  while (*rows->step()) all.push_back(rows->text());
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-std::vector<std::vector<std::string>> bits_of(const fs::path& out) {
-  const SqliteFile file = SqliteFile::open_existing(out / "campaign.sqlite", 1000).value();
-  return {rows_of(file, "runs", "runs"), rows_of(file, "views", "views JOIN runs ON runs.id = views.run")};
-}
 
 /// The columns of a table that are no times.
 std::string figures_of(const fs::path& csv) {
@@ -46,8 +26,6 @@ std::string figures_of(const fs::path& csv) {
 Arguments slice(const fs::path& out, const Arguments& wanted, const std::string& of) {
   return compare(out, wanted + Arguments{"--shard", of, "--quiet"});
 }
-
-fs::path shard_file(const fs::path& out, const std::string& name) { return out / "shards" / name / "campaign.sqlite"; }
 
 TEST(CompareSlices, ThreeInAnyOrderEqualOneMachine) {
   if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; the unit tests merge campaigns";

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """A campaign on a cluster of two nodes, of which one is lost on the way and two tasks are killed, equals the same campaign on
-one machine to the bit.
+one machine to the bit; and a benchmark there is measured.
 
 Usage: campaign_test.py SACCADE. Ends with 77 where Slurm is not installed."""
 import json
@@ -17,6 +17,7 @@ import unittest
 from cluster import Cluster, until
 
 PROGRAM = os.path.abspath(sys.argv[1])
+EVIDENCE = str(pathlib.Path(__file__).resolve().parents[2] / "scripts/evidence_campaign.py")
 TIMES = {"id", "run", "seconds", "finished_at"}
 
 
@@ -53,6 +54,24 @@ class CampaignTest(unittest.TestCase):
                 for log in sorted(cluster.folder.glob("sliced/logs/*")):
                     print(f"--- {log.name}\n{log.read_text()[-2000:]}")
                 raise
+
+    def test_a_benchmark_is_measured_where_it_is_merged(self):
+        """By the script of `make evidence`: it submits, and once the cluster is done it finds the campaign complete."""
+        with Cluster() as cluster:
+            folder = cluster.folder / "benchmark"
+            step = [EVIDENCE, PROGRAM, str(folder), "benchmark", "view-sphere", "--only", "figure", "--strategies", "random"]
+
+            def call(status):
+                done = subprocess.run(step, capture_output=True, text=True, timeout=300)
+                self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+                return done.stdout
+            call(3)
+            until(cluster.is_done, 120, "the queue is empty")
+            self.assertEqual(len((folder / "curves.csv").read_text().splitlines()), 1 + 10)  # by the job that merges
+            self.assertIn("0 done now, 1 found", call(0))
+            result = json.loads((cluster.folder / "benchmark.json").read_text())["result"]
+            self.assertEqual([slice["state"] for slice in result["slices"]], ["done"])
+            self.assertEqual([row["method"] for row in result["benchmark"]["table"]], ["random"] * 3 + ["MCMF"] * 3)
 
     def check(self, cluster):
         whole, sliced = cluster.folder / "whole", cluster.folder / "sliced"
