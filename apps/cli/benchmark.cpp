@@ -45,8 +45,10 @@ Result<std::vector<MeasuredRun>> measure_runs(Context& context, const Benchmark&
                                               const Comparison& comparison, const Campaign& campaign,
                                               const std::vector<CampaignEntry>& runs) {
   std::vector<MeasuredRun> measured;
-  context.stage("measuring");
+  const Progress& progress = context.stage("measuring");
+  std::size_t scenes_done = 0;
   for (const ComparedScene& scene : comparison.scenes()) {
+    progress.report("measuring", scenes_done++, comparison.scenes().size());
     std::vector<std::vector<Pose>> views;
     std::vector<CampaignKey> keys;
     for (const CampaignEntry& run : runs) {
@@ -103,14 +105,14 @@ class BenchmarkCommand final : public Command {
       }
       return;
     }
-    require_values();
     const Result<Benchmark> found = find_benchmark(name_);
     if (!found) usage_error("name", found.error().message);
     if (request_->path.empty()) usage_error("--out", "a folder for the results is needed");
     benchmark_ = *found;
     if (!only_.empty()) wanted_ = list_parts("--only", only_);
     check_campaign_options(compare_);
-    const std::string names = compare_.strategy_list.empty() ? joined(benchmark_.strategies, ",") : compare_.strategy_list;
+    const std::string names =
+        compare_.strategy_list.empty() ? joined(benchmark_.strategies, ",") : compare_.strategy_list;
     compare_.strategies = parse_strategies(names, benchmark_planners(global.planners));
     compare_.robot = benchmark_.robot;
   }
@@ -129,14 +131,6 @@ class BenchmarkCommand final : public Command {
   }
 
  private:
-  /// An option that is empty, as that of a variable which is not set, must not mean that it was not given.
-  void require_values() const {
-    for (const auto& [option, value] :
-         {std::pair{"--objects", &objects_}, {"--strategies", &compare_.strategy_list}, {"--only", &only_}}) {
-      if (value->empty() && command_->count(option) > 0) usage_error(option, "needs a value");
-    }
-  }
-
   CompareOptions options_for(const Context& context, const BenchmarkPlan& plan) const {
     CompareOptions options = compare_;
     options.out = context.out();
@@ -147,7 +141,7 @@ class BenchmarkCommand final : public Command {
     return options;
   }
 
-  /// What the protocol measures, beside published figures.
+  /// Measures the runs by the rule of the protocol, and sets published figures beside them.
   Result<std::string> report(Context& context, const BenchmarkPlan& plan, const Comparison& comparison,
                              const Campaign& campaign, const ComparedRuns& compared, nlohmann::json& result) const {
     std::vector<MeasuredRun> measured;

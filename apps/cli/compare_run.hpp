@@ -14,10 +14,10 @@ namespace saccade::cli {
 /// The folder of a campaign, as commands declare it.
 [[nodiscard]] FolderOption campaign_folder();
 
-/// What a command adds to the report of a campaign: writes files of its own into the folder, adds to the result, and
+/// Part of the report that a command adds: writes files of its own into the folder, adds to the result, and
 /// returns the text for people.
-using ReportPart = std::function<Result<std::string>(const Campaign& campaign, const ComparedRuns& compared,
-                                                     nlohmann::json& result)>;
+using ReportPart =
+    std::function<Result<std::string>(const Campaign& campaign, const ComparedRuns& compared, nlohmann::json& result)>;
 
 /// Does what one of MachineOptions asks for, and without any runs what the campaign in the folder of --out lacks, until
 /// the user interrupts. After runs and after a merge it writes the report of all runs of the comparison that the

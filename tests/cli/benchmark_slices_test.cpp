@@ -33,7 +33,7 @@ TEST(BenchmarkSlices, MergedTheyEqualOneMachineAndOthersAreRefused) {
   const TempFolder folder;
   const fs::path out = folder / "sliced";
   ASSERT_EQ(run_program(benchmark(folder / "whole", kOne)).status, 0);
-  for (const char* of : {"0/2", "1/2"}) {  // of one run: the first slice is empty
+  for (const char* of : {"0/2", "1/2"}) {  // there is one run, and the first slice is empty
     const Outcome done = run_program(benchmark(out, kOne + Arguments{"--shard", of}));
     ASSERT_EQ(done.status, 0) << done.err;
   }
@@ -74,8 +74,8 @@ TEST(BenchmarkSlices, TheScriptForSlurmIsShown) {
   const TempFolder folder;
   const fs::path out = folder / "out";
   const Outcome shown =
-      run_program(benchmark(out, {"--only", "figure,hare", "--strategies", "surface,random", "--seeds", "1-2", "--slurm",
-                                  "--dry-run", "--partition", "long", "--time", "2:00:00", "--cpus", "4"}));
+      run_program(benchmark(out, {"--only", "figure,hare", "--strategies", "surface,random", "--seeds", "1-2",
+                                  "--slurm", "--dry-run", "--partition", "long", "--time", "2:00:00", "--cpus", "4"}));
   ASSERT_EQ(shown.status, 0) << shown.err;
   for (const char* part : {"#SBATCH --array=0-7\n", "#SBATCH --partition=long\n", "#SBATCH --time=2:00:00\n",
                            " benchmark view-sphere --only figure,hare --strategies surface,random --seeds 1-2 "
@@ -94,7 +94,8 @@ TEST(BenchmarkSlices, TheScriptForSlurmIsShown) {
   refused(benchmark(out, {"--slurm", "--shard", "0/3"}), {"cannot be given with --shard"});
   refused(benchmark(out, {"--merge", "--list"}), {"--merge", "cannot be given with --list"});
   refused(benchmark(out, {"--shard", "3/3"}), {"--shard", "0/10"});
-  refused({"benchmark", "--out", out.string(), "--merge", "view-sphere"}, {"a protocol is needed: view-sphere, one-shot"});
+  refused({"benchmark", "--out", out.string(), "--merge", "view-sphere"},
+          {"a protocol is needed: view-sphere, one-shot"});
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ TEST(BenchmarkCommand, InterruptedOrKilledItKeepsWhatWasDoneAndGoesOn) {
   if (kSanitized) GTEST_SKIP() << "its images have the size of the protocol's";
   const TempFolder folder;
   const fs::path out = folder / "out";
-  const Arguments wanted{"benchmark", "household", "--only", "hare", "--strategies", "random,random-contours", "--jobs",
-                         "1",         "--out",     out.string()};
+  const Arguments wanted{"benchmark", "household", "--only", "hare",      "--strategies", "random,random-contours",
+                         "--jobs",    "1",         "--out",  out.string()};
   {
     RunningProgram program{wanted};
     ASSERT_TRUE(program.wait_for("hare, random-contours"));  // the first run is done

@@ -125,7 +125,7 @@ std::vector<Start> starts_of(const Benchmark& benchmark, const std::vector<Pose>
   std::vector<Start> starts;
   for (std::size_t i = 0; i < benchmark.starts; ++i) {
     const std::size_t view = (2 * i + 1) * candidates.size() / (2 * benchmark.starts);
-    starts.push_back({"@" + std::to_string(view), candidates[view]});
+    starts.push_back({std::string{"@"} + std::to_string(view), candidates[view]});
   }
   return starts;
 }

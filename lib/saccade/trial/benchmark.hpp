@@ -45,13 +45,13 @@ enum class ViewSpace : std::uint8_t {
 };
 
 struct Benchmark {
-  std::string name;
+  std::string name{};
   int version{1};  ///< raised when the same command comes to give other figures
-  std::string text;
-  std::vector<BenchmarkMesh> meshes;
-  std::vector<std::string> stand_ins;  ///< used without meshes: names of stand_in()
-  std::vector<std::string> scenes;     ///< scenes of find_scene() instead of single objects
-  bool on_table{false};                ///< false: the object floats, and is seen from all around
+  std::string text{};
+  std::vector<BenchmarkMesh> meshes{};
+  std::vector<std::string> stand_ins{};  ///< used without meshes: names of stand_in()
+  std::vector<std::string> scenes{};     ///< scenes of find_scene() instead of single objects
+  bool on_table{false};                  ///< false: the object floats, and is seen from all around
   /// Distance from an object's middle to its farthest point, to which it is scaled.
   double object_radius_m{0.1};
   bool true_size{false};  ///< meshes keep their size, in metres; stand-ins are scaled nevertheless
@@ -60,14 +60,14 @@ struct Benchmark {
   std::size_t starts{1};         ///< first views that each object is begun from
   std::size_t views_in_all{10};  ///< the first included; 0: as many as budget, after the scene's own scan
   std::size_t budget{5};         ///< views after the scan, for scenes of their own
-  PinholeCamera camera;
+  PinholeCamera camera{};
   double voxel_size_m{0.004};
   bool noise{false};
-  std::optional<CoverageRule> rule;  ///< none: coverage of docs/reference/metrics.md
+  std::optional<CoverageRule> rule{};  ///< none: coverage of docs/reference/metrics.md
   std::string robot{"free"};
-  std::vector<std::string> strategies;
-  std::vector<PublishedFigure> published;
-  std::string not_published;  ///< why there are no published figures beside ours, where there are none
+  std::vector<std::string> strategies{};
+  std::vector<PublishedFigure> published{};
+  std::string not_published{};  ///< why there are no published figures beside ours, where there are none
 
   [[nodiscard]] bool has_own_scenes() const { return !scenes.empty(); }
 };

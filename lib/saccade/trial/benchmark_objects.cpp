@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/trial/benchmark_objects.hpp"
 
+#include <system_error>
+
 #include "saccade/core/names.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
@@ -10,11 +12,13 @@
 namespace saccade {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string files_of(const Benchmark& benchmark) {
   return joined(benchmark.meshes, "; ", [](const BenchmarkMesh& mesh) { return mesh.file + " (" + mesh.from + ")"; });
 }
 
-Status check(const BenchmarkMesh& mesh, const std::filesystem::path& path) {
+Status check(const BenchmarkMesh& mesh, const fs::path& path) {
   SACCADE_TRY(const std::vector<std::byte> bytes, read_file(path));
   const std::string found = md5_of(bytes);
   if (found == mesh.md5) return {};
@@ -22,6 +26,14 @@ Status check(const BenchmarkMesh& mesh, const std::filesystem::path& path) {
                "this is another file than the protocol's: its MD5 is " + found + ", not " + mesh.md5 +
                    "; the right one: " + mesh.from,
                path.string()};
+}
+
+/// What is at a path. io_failure for a path that cannot be looked at, which is not one where nothing is.
+Result<fs::file_status> status_of(const fs::path& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (status.type() != fs::file_type::none) return status;
+  return Error{Errc::io_failure, "cannot be read: " + code.message(), path.string()};
 }
 
 }  // namespace
@@ -35,15 +47,17 @@ Result<std::vector<BenchmarkObject>> stand_ins_of(const Benchmark& benchmark) {
   return objects;
 }
 
-Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, const std::filesystem::path& folder) {
+Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, const fs::path& folder) {
   std::vector<BenchmarkObject> objects;
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    return Error{Errc::not_found, "there is no such folder of meshes", folder.string()};
+  SACCADE_TRY(const fs::file_status status, status_of(folder));
+  if (!fs::exists(status)) return Error{Errc::not_found, "there is no such folder of meshes", folder.string()};
+  if (!fs::is_directory(status)) {
+    return Error{Errc::invalid_argument, "is a file; the meshes are read from a folder", folder.string()};
   }
   for (const BenchmarkMesh& named : benchmark.meshes) {
-    const std::filesystem::path path = folder / named.file;
-    if (!std::filesystem::exists(path, ignored)) continue;
+    const fs::path path = folder / named.file;
+    SACCADE_TRY(const fs::file_status mesh_status, status_of(path));
+    if (!fs::exists(mesh_status)) continue;
     SACCADE_CHECK(check(named, path));
     SACCADE_TRY(TriangleMesh mesh, read_any_mesh(path));
     if (mesh.triangles.empty()) return Error{Errc::corrupt_data, "the file has no triangles", path.string()};

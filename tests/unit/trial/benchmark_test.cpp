@@ -155,6 +155,27 @@ TEST(Benchmark, TakesOnlyTheRightMeshes) {
   EXPECT_NEAR(bounds.max.z() - bounds.min.z(), 2.0 * (bounds.max.x() - bounds.min.x()), 1e-6);
 }
 
+TEST(Benchmark, SaysWhyItsFolderOfMeshesCannotBeUsed) {
+  const test::TempFolder folder;
+  std::ofstream{folder / "file"} << "abc";
+  std::filesystem::create_symlink("BunnyMesh.ply", folder / "BunnyMesh.ply");  // leads to itself
+  struct Case {
+    std::filesystem::path objects;
+    Errc code;
+    const char* text;
+    const char* place;
+  };
+  for (const Case& bad : {Case{folder / "nowhere", Errc::not_found, "no such folder", "nowhere"},
+                          Case{folder / "file", Errc::invalid_argument, "is a file", "file"},
+                          Case{folder.path(), Errc::io_failure, "cannot be read", "BunnyMesh.ply"}}) {
+    const auto plan = plan_benchmark(named_protocol("view-sphere"), bad.objects);
+    ASSERT_FALSE(plan) << bad.text;
+    EXPECT_EQ(plan.error().code, bad.code) << bad.text;
+    EXPECT_NE(plan.error().message.find(bad.text), std::string::npos) << plan.error().message;
+    EXPECT_TRUE(plan.error().context.ends_with(bad.place)) << plan.error().context;
+  }
+}
+
 TEST(Benchmark, ChoosesAmongItsViewsAndEndsAfterThem) {
   Benchmark benchmark = named_protocol("one-shot");
   benchmark.stand_ins = {"hare"};

@@ -47,6 +47,7 @@ std::vector<BenchmarkMesh> ycb_meshes() {
   return meshes;
 }
 
+/// The strategies beside each other; `ours` is a further form of surface.
 std::vector<std::string> all_gains(const std::string& ours) {
   std::vector<std::string> strategies{"surface",           "standard",         "random",
                                       "occlusion-aware",   "unobserved-voxel", "rear-side-voxel",
@@ -56,88 +57,86 @@ std::vector<std::string> all_gains(const std::string& ours) {
   return strategies;
 }
 
-Benchmark view_sphere_protocol() {
-  Benchmark protocol;
-  protocol.name = "view-sphere";
-  protocol.text = "an object seen from all around, 5000 views to choose from, ten views";
-  protocol.meshes = stanford_meshes();
-  protocol.stand_ins = {"figure", "hare", "coil"};
-  protocol.views = ViewSpace::shell;
-  protocol.candidates = 5000;
-  protocol.views_in_all = 10;
-  protocol.camera = {640, 480, 610.404, 608.884, 324.765, 248.344, 0.05, 1.0};
-  protocol.rule = CoverageRule{CoverageRule::Kind::voxels, 0.01, 0.001};
-  protocol.strategies = all_gains("");
-  const std::string differs{
-      "map in octree voxels of 1 cm, ours a TSDF of 4 mm; voxels count once they are occupied in that map, ours once "
-      "they hold a measured point; nothing behind the object, ours walls; their 5000 views are not ours"};
+/// Figures of the example run beside the program of Pan and Wei.
+std::vector<PublishedFigure> mcmf_figures() {
   const std::string source{
       "example run beside the program of Pan, Wei: A global max-flow-based multi-resolution next-best-view method for "
       "reconstruction of 3D unknown objects, RA-L 7(2), 2022 (github.com/psc0628/NBV-Simulation, "
       "Armadillo_example_Ours/quantitative)"};
+  const std::string differs{
+      "map in octree voxels of 1 cm, ours a TSDF of 4 mm; voxels count once they are occupied in that map, ours once "
+      "they hold a measured point; nothing behind the object, ours walls; their 5000 views are not ours"};
+  std::vector<PublishedFigure> figures;
   for (const auto& [views, coverage] : {std::pair{1.0, 0.480989}, {5.0, 0.914449}, {10.0, 0.963878}}) {
-    protocol.published.push_back({"MCMF", views, coverage, 2022, source, "Armadillo, one run, of all voxels", differs});
+    figures.push_back({"MCMF", views, coverage, 2022, source, "Armadillo, one run, of all voxels", differs});
   }
-  return protocol;
+  return figures;
+}
+
+Benchmark view_sphere_protocol() {
+  return {.name = "view-sphere",
+          .text = "an object seen from all around, 5000 views to choose from, ten views",
+          .meshes = stanford_meshes(),
+          .stand_ins = {"figure", "hare", "coil"},
+          .views = ViewSpace::shell,
+          .candidates = 5000,
+          .views_in_all = 10,
+          .camera = {640, 480, 610.404, 608.884, 324.765, 248.344, 0.05, 1.0},
+          .rule = CoverageRule{CoverageRule::Kind::voxels, 0.01, 0.001},
+          .strategies = all_gains(""),
+          .published = mcmf_figures()};
 }
 
 Benchmark one_shot_protocol() {
-  Benchmark protocol;
-  protocol.name = "one-shot";
-  protocol.text = "an object on a table, 32 views over it; all views chosen at once, or one by one; 12 views";
-  protocol.meshes = stanford_meshes();
-  protocol.stand_ins = {"figure", "hare", "coil", "jug"};
-  protocol.on_table = true;
-  protocol.views = ViewSpace::hemisphere;
-  protocol.candidates = 32;
-  protocol.starts = 4;
-  protocol.views_in_all = 12;
-  protocol.camera = {1280, 720, 915.607, 913.327, 647.145, 372.515, 0.05, 2.0};
-  protocol.rule = CoverageRule{CoverageRule::Kind::voxels, 2.0 * 0.1 / 32.0, 0.001};
-  protocol.strategies = all_gains("surface-one-shot");
-  protocol.published.push_back({"MA-SCVP", 12.2, 0.931, 0, kSurvey, "mean over the survey's objects", kSurveyDiffers});
-  protocol.published.push_back({"volumetric information gain", 20.0, 0.921, 0, kSurvey,
-                                "mean over the survey's objects; 1 % less than MA-SCVP, read as a point",
-                                kSurveyDiffers});
-  protocol.published.push_back(
-      {"SCVP", 10.0, 0.808499, 2022,
-       "example run beside the program of Pan, Hu, Wei: SCVP, RA-L 7(2), 2022 (github.com/psc0628/SCVP-Simulation, "
-       "HB26_example_SCVP/quantitative)",
-       "object HB26, one run, of all voxels, those that stand on the table included",
-       "another object, a map in octree voxels of 6.25 mm; the network stops by itself there"});
-  return protocol;
+  return {.name = "one-shot",
+          .text = "an object on a table, 32 views over it; all views chosen at once, or one by one; 12 views",
+          .meshes = stanford_meshes(),
+          .stand_ins = {"figure", "hare", "coil", "jug"},
+          .on_table = true,
+          .views = ViewSpace::hemisphere,
+          .candidates = 32,
+          .starts = 4,
+          .views_in_all = 12,
+          .camera = {1280, 720, 915.607, 913.327, 647.145, 372.515, 0.05, 2.0},
+          .rule = CoverageRule{CoverageRule::Kind::voxels, 2.0 * 0.1 / 32.0, 0.001},
+          .strategies = all_gains("surface-one-shot"),
+          .published = {{"MA-SCVP", 12.2, 0.931, 0, kSurvey, "mean over the survey's objects", kSurveyDiffers},
+                        {"volumetric information gain", 20.0, 0.921, 0, kSurvey,
+                         "mean over the survey's objects; 1 % less than MA-SCVP, read as a point", kSurveyDiffers},
+                        {"SCVP", 10.0, 0.808499, 2022,
+                         "example run beside the program of Pan, Hu, Wei: SCVP, RA-L 7(2), 2022 "
+                         "(github.com/psc0628/SCVP-Simulation, HB26_example_SCVP/quantitative)",
+                         "object HB26, one run, of all voxels, those that stand on the table included",
+                         "another object, a map in octree voxels of 6.25 mm; the network stops by itself there"}}};
 }
 
 Benchmark tabletop_arm_protocol() {
-  Benchmark protocol;
-  protocol.name = "tabletop-arm";
-  protocol.text = "eight objects on a table, an arm that carries the camera: views, path, time";
-  for (int scene = 301; scene <= 305; ++scene) protocol.scenes.push_back("clutter:" + std::to_string(scene));
-  protocol.views_in_all = 0;
-  protocol.views = ViewSpace::own;
-  protocol.robot = "comau";
-  protocol.noise = true;
-  protocol.strategies = {"surface", "standard", "unobserved-voxel", "surface-edge", "random-contours"};
-  protocol.not_published =
-      "no publication whose figures depend on arm, scenes and limits so little that they could stand beside ours";
-  return protocol;
+  return {.name = "tabletop-arm",
+          .text = "eight objects on a table, an arm that carries the camera: views, path, time",
+          .scenes = {"clutter:301", "clutter:302", "clutter:303", "clutter:304", "clutter:305"},
+          .views = ViewSpace::own,
+          .views_in_all = 0,
+          .noise = true,
+          .robot = "comau",
+          .strategies = {"surface", "standard", "unobserved-voxel", "surface-edge", "random-contours"},
+          .not_published =
+              "no publication whose figures depend on arm, scenes and limits so little that they could "
+              "stand beside ours"};
 }
 
 Benchmark household_protocol() {
-  Benchmark protocol;
-  protocol.name = "household";
-  protocol.text = "household objects on a table, a camera that flies freely, six views";
-  protocol.meshes = ycb_meshes();
-  protocol.stand_ins = {"jug", "figure", "hare"};
-  protocol.on_table = true;
-  protocol.true_size = true;
-  protocol.views = ViewSpace::own;
-  protocol.views_in_all = 6;
-  protocol.camera = SimulatedRunConfig{}.camera;
-  protocol.rule = CoverageRule{CoverageRule::Kind::distance, 0.005, 0.002};
-  protocol.strategies = all_gains("");
-  protocol.not_published = "no published protocol on these meshes could be read";
-  return protocol;
+  return {.name = "household",
+          .text = "household objects on a table, a camera that flies freely, six views",
+          .meshes = ycb_meshes(),
+          .stand_ins = {"jug", "figure", "hare"},
+          .on_table = true,
+          .true_size = true,
+          .views = ViewSpace::own,
+          .views_in_all = 6,
+          .camera = SimulatedRunConfig{}.camera,
+          .rule = CoverageRule{CoverageRule::Kind::distance, 0.005, 0.002},
+          .strategies = all_gains(""),
+          .not_published = "no published protocol on these meshes could be read"};
 }
 
 }  // namespace
