@@ -58,6 +58,9 @@ Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, co
     const fs::path path = folder / named.file;
     SACCADE_TRY(const fs::file_status mesh_status, status_of(path));
     if (!fs::exists(mesh_status)) continue;
+    if (!fs::is_regular_file(mesh_status)) {  // a pipe would be waited for
+      return Error{Errc::invalid_argument, "is not an ordinary file", path.string()};
+    }
     SACCADE_CHECK(check(named, path));
     SACCADE_TRY(TriangleMesh mesh, read_any_mesh(path));
     if (mesh.triangles.empty()) return Error{Errc::corrupt_data, "the file has no triangles", path.string()};

@@ -2,6 +2,7 @@
 #include "saccade/trial/benchmark.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <set>
@@ -158,7 +159,9 @@ TEST(Benchmark, TakesOnlyTheRightMeshes) {
 TEST(Benchmark, SaysWhyItsFolderOfMeshesCannotBeUsed) {
   const test::TempFolder folder;
   std::ofstream{folder / "file"} << "abc";
-  std::filesystem::create_symlink("BunnyMesh.ply", folder / "BunnyMesh.ply");  // leads to itself
+  for (const char* name : {"loop", "pipe"}) std::filesystem::create_directory(folder / name);
+  std::filesystem::create_symlink("BunnyMesh.ply", folder / "loop/BunnyMesh.ply");  // leads to itself
+  ASSERT_EQ(::mkfifo((folder / "pipe/BunnyMesh.ply").c_str(), 0600), 0);
   struct Case {
     std::filesystem::path objects;
     Errc code;
@@ -167,7 +170,8 @@ TEST(Benchmark, SaysWhyItsFolderOfMeshesCannotBeUsed) {
   };
   for (const Case& bad : {Case{folder / "nowhere", Errc::not_found, "no such folder", "nowhere"},
                           Case{folder / "file", Errc::invalid_argument, "is a file", "file"},
-                          Case{folder.path(), Errc::io_failure, "cannot be read", "BunnyMesh.ply"}}) {
+                          Case{folder / "loop", Errc::io_failure, "cannot be read", "BunnyMesh.ply"},
+                          Case{folder / "pipe", Errc::invalid_argument, "not an ordinary file", "BunnyMesh.ply"}}) {
     const auto plan = plan_benchmark(named_protocol("view-sphere"), bad.objects);
     ASSERT_FALSE(plan) << bad.text;
     EXPECT_EQ(plan.error().code, bad.code) << bad.text;
