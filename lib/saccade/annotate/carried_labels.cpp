@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/cloud/nearest_neighbours.hpp"
+#include "saccade/cloud/nearest_places.hpp"
 #include "saccade/cloud/nearest_points.hpp"
 
 namespace saccade {
@@ -18,12 +18,14 @@ Error bad_carry(const char* what) { return {Errc::invalid_argument, what, "carry
 std::vector<float> reaches_of(std::span<const Eigen::Vector3f> positions_m, const CarryConfig& config,
                               const Executor& executor) {
   std::vector<float> reaches_m(positions_m.size(), 0.0F);
-  const NearestNeighbours near = nearest_neighbours(positions_m, config.neighbours, executor);
+  const NearestPlaces places = nearest_places(positions_m, config.neighbours, executor);
+  const NearestNeighbours& near = places.neighbours;
   if (near.count == 0) return reaches_m;
   for (std::size_t node = 0; node < near.order.size(); ++node) {
     const float last_m = (near.positions_m[near.of(node).back()] - near.positions_m[node]).norm();
     reaches_m[near.order[node]] = static_cast<float>(config.spacings * static_cast<double>(last_m));
   }
+  for (const PointCopy& copy : places.copies) reaches_m[copy.point] = reaches_m[copy.original];
   return reaches_m;
 }
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "saccade/cloud/nearest_neighbours.hpp"
+#include "saccade/cloud/nearest_places.hpp"
 #include "saccade/core/statistics.hpp"
 
 namespace saccade {
@@ -81,12 +81,27 @@ class Nodes {
 
   /// Returns the cost by eq. 4.17, in path units, at most kPathUnits.
   [[nodiscard]] std::uint32_t cost(std::uint32_t a, std::uint32_t b) const {
-    const double units = units_per_m_ * distance_m(a, b) + units_per_normal_ * normal_difference(a, b) +
-                         units_per_color_ * color_difference(a, b);
-    return units < kPathUnits ? static_cast<std::uint32_t>(units + 0.5) : kPathUnits;
+    return in_units(units_per_m_ * distance_m(a, b) + units_per_normal_ * normal_difference(a, b) +
+                    units_per_color_ * color_difference(a, b));
+  }
+
+  /// Returns the cost between a node and a point at the same place, whose estimated normals are the same, too.
+  [[nodiscard]] std::uint32_t cost_of_copy(std::uint32_t node, std::uint32_t copy, const PointCloud& cloud) const {
+    double units{0.0};
+    if (!colors_.empty()) units += units_per_color_ * static_cast<double>((colors_[node] - cloud.colors[copy]).norm());
+    if (normals_are_oriented_) {
+      const Eigen::Vector4f theirs = with_length(cloud.normals[copy]);
+      const float dot = nodes_[node].normal.head<3>().dot(theirs.head<3>());
+      units += units_per_normal_ * static_cast<double>(std::max(0.0F, nodes_[node].normal.w() * theirs.w() - dot));
+    }
+    return in_units(units);
   }
 
  private:
+  static std::uint32_t in_units(double units) {
+    return units < kPathUnits ? static_cast<std::uint32_t>(units + 0.5) : kPathUnits;
+  }
+
   struct alignas(32) Node {
     Eigen::Vector3f p_m;
     float reach_m2;          ///< squared distance of its farthest neighbour
@@ -214,6 +229,35 @@ Joined join(const NearestNeighbours& neighbours, std::size_t points, const Nodes
   return joined;
 }
 
+/// Joins each copy to the point that stands for its place.
+void add_copies(std::span<const PointCopy> copies, std::span<const std::uint32_t> node_of, const Nodes& nodes,
+                const PointCloud& cloud, Joined& joined) {
+  std::vector<std::uint32_t> more(node_of.size(), 0);
+  for (const PointCopy& copy : copies) {
+    ++more[node_of[copy.point]];
+    ++more[node_of[copy.original]];
+  }
+  std::vector<std::uint32_t> starts(joined.starts.size(), 0);
+  for (std::size_t node = 0; node < more.size(); ++node) {
+    starts[node + 1] = starts[node] + joined.starts[node + 1] - joined.starts[node] + more[node];
+  }
+  DiskVector<Neighbourhood::Edge> edges(joined.edges.get_allocator());
+  edges.resize(starts.back());
+  for (std::size_t node = 0; node < more.size(); ++node) {
+    std::copy(joined.edges.begin() + joined.starts[node], joined.edges.begin() + joined.starts[node + 1],
+              edges.begin() + starts[node]);
+  }
+  for (const PointCopy& copy : copies) {  // ascending by point, and so by node
+    const std::uint32_t original = node_of[copy.original];
+    const std::uint32_t node = node_of[copy.point];
+    const std::uint32_t cost = nodes.cost_of_copy(original, copy.point, cloud);
+    edges[starts[original + 1] - more[original]--] = {node, cost};
+    edges[starts[node + 1] - more[node]--] = {original, cost};
+  }
+  joined.starts = std::move(starts);
+  joined.edges = std::move(edges);
+}
+
 Error cancelled_build() { return {Errc::cancelled, "the neighbourhood graph was not finished", "neighbourhood"}; }
 
 std::uint32_t median_of_sample(std::span<const Neighbourhood::Edge> edges) {
@@ -276,8 +320,11 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
                  "neighbourhood"};
   }
   progress.report("graph", 0, kStages);
-  NearestNeighbours neighbours =
-      nearest_neighbours(cloud.positions_m, static_cast<std::size_t>(config.neighbours), executor, std::move(disk));
+  const auto count = static_cast<std::size_t>(config.neighbours);
+  NearestPlaces nearest = config.strong_borders
+                              ? nearest_places(cloud.positions_m, count, executor, disk)
+                              : NearestPlaces{nearest_neighbours(cloud.positions_m, count, executor, disk), {}};
+  NearestNeighbours& neighbours = nearest.neighbours;
   if (progress.cancelled()) return cancelled_build();
   progress.report("graph", 1, kStages);
   const Nodes nodes{cloud, neighbours, config, executor};
@@ -303,6 +350,7 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
     }
   }
   Joined joined = join(neighbours, size, nodes, executor);
+  if (!nearest.copies.empty()) add_copies(nearest.copies, graph.node_of_, nodes, cloud, joined);
   graph.starts_ = std::move(joined.starts);
   graph.edges_ = std::move(joined.edges);
   graph.median_cost_ = median_of_sample(graph.edges_);

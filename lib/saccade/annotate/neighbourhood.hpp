@@ -28,7 +28,8 @@ struct NeighbourhoodConfig {
   /// multiplied by its median: for clouds that thin out away from the sensor, as a LiDAR's do.
   bool adapt_to_density{false};
   /// Costs above the median count more, those below it less, each by its ratio to the median, at most ten times; and
-  /// later clicks stop at strong borders (click_start.hpp). False: eq. 4.17 and Algorithm 8 as printed.
+  /// later clicks stop at strong borders (click_start.hpp). Where many points share a place, one of them is joined to
+  /// its nearest, and the others to it alone (nearest_places). False: eq. 4.17 and Algorithm 8 as printed.
   bool strong_borders{false};
 
   /// invalid_argument unless weights are finite and not negative, one of them and Ω_max positive.

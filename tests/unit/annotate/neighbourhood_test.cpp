@@ -95,6 +95,36 @@ TEST(Neighbourhood, EdgesAreThereOnceBothWaysWhereManyPointsAreAsNear) {
   }
 }
 
+TEST(Neighbourhood, ManyPointsAtOnePlaceAreJoinedToTheOthers) {
+  PointCloud cloud;  // a grid, twelve times, in two colours
+  for (int i = 0; i < 100; ++i) {
+    for (int copy = 0; copy < 12; ++copy) {
+      cloud.positions_m.emplace_back(static_cast<float>(i % 10), static_cast<float>(i / 10), 0.0F);
+      cloud.colors.push_back(Eigen::Vector3f::Constant(copy % 2 == 0 ? 0.0F : 1.0F));
+    }
+  }
+  NeighbourhoodConfig config;
+  config.strong_borders = true;
+  const Neighbourhood graph = built(cloud, config);
+  std::vector<std::uint32_t> reached{0};
+  std::set<std::uint32_t> seen{0};
+  while (!reached.empty()) {
+    const std::uint32_t point = reached.back();
+    reached.pop_back();
+    for (const Neighbourhood::Edge& edge : graph.edges(graph.node_of(point))) {
+      const std::uint32_t other = graph.point_of(edge.node);
+      EXPECT_EQ(cost_between(graph, other, point), edge.cost);
+      if (seen.insert(other).second) reached.push_back(other);
+    }
+  }
+  EXPECT_EQ(seen.size(), cloud.positions_m.size());
+  EXPECT_EQ(cost_between(graph, 0, 2), 0U);
+  EXPECT_GT(cost_between(graph, 0, 1).value_or(0), 0U);
+
+  config.strong_borders = false;  // as printed: among copies alone
+  EXPECT_FALSE(cost_between(built(cloud, config), 0, 12));
+}
+
 TEST(Neighbourhood, EstimatedNormalsHaveNoSides) {
   PointCloud cloud;  // a sheet, and another that stands on it
   for (int i = 0; i < 400; ++i) {
