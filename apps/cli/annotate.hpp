@@ -81,6 +81,8 @@ struct AnnotateOptions {
   [[nodiscard]] bool of_several() const;
   /// Clouds seen one after the other: labels are carried between them, and mean the same in all.
   [[nodiscard]] bool is_sequence() const;
+  /// Sessions that are not there are begun; else they are only read.
+  [[nodiscard]] bool begins_sessions() const;
   /// A person annotates; else it is done without one.
   [[nodiscard]] bool opens_page() const;
 };

@@ -98,6 +98,7 @@ Result<JobList> plan_jobs(const AnnotateOptions& options) {
   if (!options.poses.empty()) {
     SACCADE_TRY(poses, read_cloud_poses(options.poses, clouds, list.notes));
   }
+  if (options.begins_sessions()) SACCADE_CHECK(make_folder(options.session));
   for (const fs::path& folder : {options.truth, options.session, options.seeds, options.segments}) {
     if (folder.empty() || is_folder(folder)) continue;
     return Error{Errc::not_found, "is not a folder, as it must be for several clouds", folder.string()};

@@ -186,6 +186,10 @@ bool AnnotateOptions::is_sequence() const {
   return of_several() && (!of_folder() || sequence || carry || !poses.empty());
 }
 
+bool AnnotateOptions::begins_sessions() const {
+  return !session.empty() && (!script.empty() || !seeds.empty() || !presets.empty() || carry || opens_page());
+}
+
 void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
   add_value(command, "cloud", options.clouds, "CLOUD",
             "point cloud (PCD, PLY, text or KITTI .bin), several of a sequence, or a folder of clouds")

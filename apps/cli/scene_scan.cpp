@@ -77,6 +77,8 @@ class SceneScan final : public Command {
   }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
+    SACCADE_CHECK(check_output(out_, "--out", {}));
+    SACCADE_CHECK(check_output(names_, "--names", {out_}));
     SACCADE_TRY(Scene scene, find_scene(scene_));
     if (config_.stations_m.empty()) {
       for (const Pose& pose : scene.scan) config_.stations_m.emplace_back(pose.translation());
@@ -109,8 +111,8 @@ class SceneScan final : public Command {
                                                   : write_label_names_text(names_, names));
     }
     std::string text = std::to_string(scan.labels.size()) + " points of " + std::to_string(names.size()) +
-                       " segments, from " + std::to_string(config_.stations_m.size()) + " stations, in " +
-                       out_.string() + "\n";
+                       " segments, from " + std::to_string(config_.stations_m.size()) +
+                       (config_.stations_m.size() == 1 ? " station, in " : " stations, in ") + out_.string() + "\n";
     return Outcome{.result = {{"scene", rays.scene().name},
                               {"points", scan.labels.size()},
                               {"stations", config_.stations_m.size()},

@@ -79,8 +79,7 @@ TEST_F(AnnotateFolder, SessionsAreListedAndExported) {
   EXPECT_NE(table.out.find("b.csv     12000   100.0 %"), std::string::npos) << table.out;
 }
 
-TEST_F(AnnotateFolder, SeedsBeginWhatIsNotBegun) {
-  fs::create_directory(path("sessions"));
+TEST_F(AnnotateFolder, SeedsBeginWhatIsNotBegun) {  // in a folder that is not there
   const Arguments sessions{"--session", path("sessions")};
   ASSERT_EQ(
       result_of(sessions + Arguments{"--script", write("s.jsonl", "{\"do\": \"clear\"}")}, "clouds/b.csv")["actions"],

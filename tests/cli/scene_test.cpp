@@ -70,6 +70,8 @@ TEST(SceneCommand, RefusesWhatItCannotDo) {
   refused({"scene", "render", "jug", "--out", out, "--image-size", "0,5"}, 2, "--image-size");
   refused({"scene", "export", "jug", "--out", out, "--spacing", "-1"}, 2, "--spacing");
   refused({"scene", "render", "bottel", "--out", out}, 3, "did you mean bottle?");
+  refused({"scene", "scan", "room:1", "--step", "4", "--out", (folder / "none" / "room.pcd").string()}, 3,
+          "cannot create a file in this folder");  // before it scans
   const fs::path typo = folder.write("typo.yaml", "scene: a\nworkspce: 3\n");
   refused({"scene", "render", typo.string(), "--out", out}, 3,
           "typo.yaml, line 2, column 1: unknown key workspce in a scene; known here: ");
