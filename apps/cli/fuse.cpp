@@ -14,6 +14,7 @@
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/file_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/map/mesh.hpp"
 #include "summary.hpp"
@@ -39,6 +40,7 @@ struct FuseRun {
   PinholeCamera camera;
   RgbdFolderInfo info;
   FuseRecord record;
+  std::optional<Pose> T_world_last;  ///< last pose in a map that is gone on with
   std::optional<MapFit> fit;
   std::optional<TrajectoryError> trajectory;
   std::size_t triangles{0};
@@ -55,11 +57,30 @@ Result<std::unique_ptr<RgbdFolderSource>> open_frames(FuseRun& run) {
   return std::move(frames.source);
 }
 
-Result<Reconstruction> make_reconstruction(const FuseRun& run) {
+/// The pose of the last frame of a saved map: its run wrote the trajectory beside it.
+std::optional<Pose> last_pose_beside(const std::filesystem::path& map) {
+  const auto trajectory = read_tum_trajectory(map.parent_path() / "trajectory.txt");
+  if (!trajectory || trajectory->empty()) return std::nullopt;
+  return trajectory->back().T_world_camera;
+}
+
+Result<Reconstruction> make_reconstruction(FuseRun& run) {
   if (run.options.continue_map.empty()) return Reconstruction::create({run.options.map, IcpConfig{}});
   SACCADE_TRY(TsdfSnapshot map, load_map(run.options.continue_map, run.context.executor()));
   if (run.options.map.workspace) map.config.workspace = run.options.map.workspace;
+  run.T_world_last = last_pose_beside(run.options.continue_map);
   return Reconstruction::resume(std::move(map), IcpConfig{});
+}
+
+/// Closes loops where that was not done beside the frames, and fuses again along the corrected poses.
+Status close_all(FuseRun& run, const RgbdFolderSource& source, Reconstruction& reconstruction) {
+  const Executor& executor = run.context.executor();
+  ProgressBar& bar = run.context.bar();
+  if (run.options.loops == LoopMode::end) {
+    SACCADE_TRY(run.loops, close_loops(source, run.folder, reconstruction.map().config(), executor, bar, run.record));
+  }
+  if (run.loops->T_world_corrected.empty()) return {};
+  return fuse_record_again(source, run.folder, *run.loops, run.record, reconstruction, executor, bar);
 }
 
 /// Tracks and fuses all frames, and closes loops where this is asked for.
@@ -73,15 +94,13 @@ Status fuse_all(FuseRun& run, RgbdFolderSource& source, Reconstruction& reconstr
     SACCADE_TRY(run.loops, fuse_frames_with_loops(source, *again.source, run.folder, reconstruction, run.tracking, gaps,
                                                   executor, bar, run.record));
   } else {
-    run.record = fuse_frames(source, reconstruction, run.tracking, gaps, executor, bar);
+    run.record = fuse_frames(source, reconstruction, run.tracking, gaps, run.T_world_last, executor, bar);
   }
   run.context.lap("frames");
   if (run.record.fused.empty()) return {};
-  if (run.options.loops == LoopMode::end && !interrupted()) {
-    SACCADE_TRY(run.loops, close_loops(source, run.folder, reconstruction.map().config(), executor, bar, run.record));
-  }
-  if (!run.loops || run.loops->counts.closed + run.loops->exchanges == 0) return {};
-  SACCADE_CHECK(fuse_record_again(source, run.folder, run.record, reconstruction, executor, bar));
+  if (run.record.failure || run.options.loops == LoopMode::off || interrupted()) return {};
+  const Status closed = close_all(run, source, reconstruction);
+  if (!closed) run.record.failure = closed.error();  // reading a frame again, mostly; the map stands
   run.context.lap("loops");
   return {};
 }
@@ -229,7 +248,8 @@ Status write_results(FuseRun& run, const RgbdFolderSource& source, const RunFold
   return {};
 }
 
-/// Saves what the frames gave before the store of a paged map failed. Returns the failure, and where the map is.
+/// Saves what the frames gave before a failure that is no frame's: of the store of a paged map, or of frames that are
+/// read again. Returns the failure, and where the map is.
 Error save_before_failure(const FuseRun& run, const RunFolder& out, const TsdfSnapshot& map) {
   Error failure = *run.record.failure;
   if (run.record.fused.empty() || !out.remove(std::span{kRunFiles}.first(1))) return failure;
@@ -264,7 +284,7 @@ class Fuse final : public Command {
   }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
-    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, 0, {}, {}};
+    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, {}, 0, {}, {}};
     SACCADE_TRY(const auto source, open_frames(run));
     SACCADE_TRY(Reconstruction reconstruction, make_reconstruction(run));
     SACCADE_CHECK(check_loops(run));
@@ -280,8 +300,12 @@ class Fuse final : public Command {
     if (run.record.failure) return save_before_failure(run, *context.folder(), map);
     if (run.record.fused.empty() || map.grid.empty()) return nothing_fused(run.record, fuse_.frames);
     if (run.tracking != TrackingMode::forced) run.trajectory = measure_trajectory(run.record);
-    SACCADE_TRY(run.fit,
-                measure_map(map, run.camera, *source, run.folder, run.record, context.executor(), context.bar()));
+    auto fit = measure_map(map, run.camera, *source, run.folder, run.record, context.executor(), context.bar());
+    if (!fit) {
+      run.record.failure = fit.error();
+      return save_before_failure(run, *context.folder(), map);
+    }
+    run.fit = *std::move(fit);
     context.lap("residual");
     SACCADE_CHECK(write_results(run, *source, *context.folder(), map));
     Outcome outcome{.result = result_json(run, map), .text = fuse_text(run, map)};

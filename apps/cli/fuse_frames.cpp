@@ -40,6 +40,10 @@ void record_report(const Frame& frame, const std::optional<Pose>& T_world_true, 
 
 }  // namespace
 
+bool has_depth(const DepthImage& depth) {
+  return std::any_of(depth.data(), depth.data() + depth.size(), [](float z) { return z > 0.0F; });
+}
+
 FuseRecord process_frames(CameraSource& source, std::string_view stage, const std::optional<GapFilling>& gaps,
                           ProgressBar& progress, const FrameProcess& process) {
   FuseRecord record;
@@ -57,13 +61,13 @@ FuseRecord process_frames(CameraSource& source, std::string_view stage, const st
     }
     if (!*next) break;
     Frame& frame = **next;
-    if (!chosen) {
+    if (!chosen && has_depth(frame.depth)) {
       chosen = choose_gap_filling(frame.depth);
       if (chosen->max_gap_px > 0)
         progress.note("the depth images have holes throughout: gaps of up to 2 pixels are filled");
     }
-    record.gaps = *chosen;
-    frame.depth = fill_gaps(frame.depth, *chosen);
+    record.gaps = chosen.value_or(GapFilling{});
+    frame.depth = fill_gaps(frame.depth, record.gaps);
     if (!frame.color) ++record.without_color;
     const std::optional<Pose> T_world_true = frame.T_world_camera;
     const auto report = process(frame);
@@ -81,10 +85,12 @@ FuseRecord process_frames(CameraSource& source, std::string_view stage, const st
 }
 
 FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
-                       const std::optional<GapFilling>& gaps, const Executor& executor, ProgressBar& progress) {
+                       const std::optional<GapFilling>& gaps, const std::optional<Pose>& T_world_last,
+                       const Executor& executor, ProgressBar& progress) {
   bool resumed = reconstruction.map().content().grid.empty();
   return process_frames(source, "fusing", gaps, progress, [&](Frame& frame) {
-    if (!resumed && frame.T_world_camera) reconstruction.resume(*frame.T_world_camera);  // a saved map is gone on with
+    const std::optional<Pose>& start = frame.T_world_camera ? frame.T_world_camera : T_world_last;
+    if (!resumed && start) reconstruction.resume(*start);  // a saved map is gone on with
     resumed = true;
     return reconstruction.process(frame, source.camera(), mode, frame.T_world_camera, executor);
   });

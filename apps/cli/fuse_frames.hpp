@@ -49,16 +49,20 @@ struct FuseRecord {
 /// What is done with a frame; it may set the frame's pose.
 using FrameProcess = std::function<Result<FrameReport>(Frame&)>;
 
-/// Gaps are filled in what is processed; without `gaps`, the first frame decides. Until the source ends, the program is
-/// interrupted, or `process` answers io_failure or corrupt_data, which is not the frame's fault: a paged map's store.
+[[nodiscard]] bool has_depth(const DepthImage& depth);
+
+/// Gaps are filled in what is processed; without `gaps`, the first frame with depths decides. Until the source ends,
+/// the program is interrupted, or `process` answers io_failure or corrupt_data, which is not the frame's fault: a paged
+/// map's store.
 [[nodiscard]] FuseRecord process_frames(CameraSource& source, std::string_view stage,
                                         const std::optional<GapFilling>& gaps, ProgressBar& progress,
                                         const FrameProcess& process);
 
-/// Gaps are filled in what is tracked and fused, as by process_frames.
+/// Gaps are filled in what is tracked and fused, as by process_frames. A map that is gone on with is tracked from the
+/// first frame's pose or, where it has none, from T_world_last, the last pose of the map's own frames.
 [[nodiscard]] FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
-                                     const std::optional<GapFilling>& gaps, const Executor& executor,
-                                     ProgressBar& progress);
+                                     const std::optional<GapFilling>& gaps, const std::optional<Pose>& T_world_last,
+                                     const Executor& executor, ProgressBar& progress);
 
 /// Outcome of a run without a single fused frame, or with none that shows anything.
 [[nodiscard]] Result<Outcome> nothing_fused(const FuseRecord& record, const std::filesystem::path& frames);

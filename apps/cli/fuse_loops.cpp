@@ -18,21 +18,24 @@ std::vector<TrackedFrame> tracked_frames(const FuseRecord& record) {
   return frames;
 }
 
-/// Returns the farthest that a pose was moved.
-double take_poses(const std::vector<Pose>& T_world_camera, FuseRecord& record) {
+double farthest_m(const std::vector<Pose>& T_world_camera, const FuseRecord& record) {
   double farthest_m{0.0};
   for (std::size_t i = 0; i < record.fused.size(); ++i) {
-    Pose& pose = record.fused[i].T_world_camera;
-    farthest_m = std::max(farthest_m, (T_world_camera.at(i).translation() - pose.translation()).norm());
-    pose = T_world_camera.at(i);
+    const Eigen::Vector3d moved = T_world_camera.at(i).translation() - record.fused[i].T_world_camera.translation();
+    farthest_m = std::max(farthest_m, moved.norm());
   }
   return farthest_m;
 }
 
-/// The filling that process_frames would choose by the first frame that it can read.
+void take_poses(const std::vector<Pose>& T_world_camera, FuseRecord& record) {
+  for (std::size_t i = 0; i < record.fused.size(); ++i) record.fused[i].T_world_camera = T_world_camera.at(i);
+}
+
+/// The filling that process_frames would choose by the first frame that it can read and that has depths.
 GapFilling chosen_gaps(const RgbdFolderSource& source) {
   for (std::size_t i = 0; i < source.size().value_or(0); ++i) {
-    if (const auto frame = source.at(i)) return choose_gap_filling(frame->depth);
+    const auto frame = source.at(i);
+    if (frame && has_depth(frame->depth)) return choose_gap_filling(frame->depth);
   }
   return {};
 }
@@ -87,16 +90,26 @@ Result<LoopReport> fuse_frames_with_loops(RgbdFolderSource& source, const RgbdFo
     return done;
   });
   progress.update("closing loops", 0, 0);
-  SACCADE_CHECK(loops.finish());
+  Status finished;
+  if (interrupted()) {
+    loops.give_up();
+  } else {
+    finished = loops.finish();
+  }
   report.counts = loops.counts();
   report.exchanges = loops.exchanges();
   report.delay_ms_max = delay_ms_max;
-  report.moved_max_m = take_poses(loops.poses(), record);
+  if (finished && report.counts.closed + report.exchanges > 0 && !interrupted()) {
+    report.T_world_corrected = loops.poses();
+    report.moved_max_m = farthest_m(report.T_world_corrected, record);
+  }
+  take_poses(loops.poses_in_map(), record);
+  if (!finished && !record.failure) record.failure = finished.error();
   return report;
 }
 
 Result<LoopReport> close_loops(const RgbdFolderSource& source, const RgbdFolderConfig& config, const TsdfConfig& map,
-                               const Executor& executor, ProgressBar& progress, FuseRecord& record) {
+                               const Executor& executor, ProgressBar& progress, const FuseRecord& record) {
   SACCADE_TRY(LoopCloser closer, LoopCloser::create(source.camera(), map, frames_again(source, config, record.gaps)));
   LoopReport report{.mode = LoopMode::end};
   for (const TrackedFrame& frame : tracked_frames(record)) {
@@ -107,21 +120,32 @@ Result<LoopReport> close_loops(const RgbdFolderSource& source, const RgbdFolderC
   if (interrupted()) return report;
   SACCADE_CHECK(closer.finish(executor));
   report.counts = closer.counts();
-  if (report.counts.closed > 0) report.moved_max_m = take_poses(closer.poses(), record);
+  if (report.counts.closed > 0) {
+    report.T_world_corrected = closer.poses();
+    report.moved_max_m = farthest_m(report.T_world_corrected, record);
+  }
   return report;
 }
 
-Status fuse_record_again(const RgbdFolderSource& source, const RgbdFolderConfig& config, const FuseRecord& record,
-                         Reconstruction& reconstruction, const Executor& executor, ProgressBar& progress) {
+void apply_poses(LoopReport& loops, FuseRecord& record) {
+  take_poses(loops.T_world_corrected, record);
+  loops.applied = true;
+}
+
+Status fuse_record_again(const RgbdFolderSource& source, const RgbdFolderConfig& config, LoopReport& loops,
+                         FuseRecord& record, Reconstruction& reconstruction, const Executor& executor,
+                         ProgressBar& progress) {
   SACCADE_TRY(TsdfMap map, TsdfMap::create(reconstruction.map().config()));
   const ReadFrame read = frames_again(source, config, record.gaps);
-  const std::vector<TrackedFrame> frames = tracked_frames(record);
+  std::vector<TrackedFrame> frames = tracked_frames(record);
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].T_world_camera = loops.T_world_corrected.at(i);
   for (std::size_t i = 0; i < frames.size() && !interrupted(); ++i) {
     progress.update("fusing along corrected poses", i, frames.size());
     SACCADE_CHECK(fuse_along(map, source.camera(), std::span{frames}.subspan(i, 1), read, executor));
   }
   if (interrupted()) return {};
   const TsdfMap before = reconstruction.exchange_map(std::move(map), frames.back().T_world_camera);
+  apply_poses(loops, record);
   return {};
 }
 
@@ -137,6 +161,7 @@ nlohmann::json loops_json(const LoopReport& report) {
             {"alone", counts.rejected_alone},
             {"graph", counts.dropped}}},
           {"closed", counts.closed},
+          {"applied", report.applied},
           {"exchanges", report.exchanges},
           {"delay_ms_max", report.delay_ms_max ? nlohmann::json(*report.delay_ms_max) : nlohmann::json{}},
           {"moved_max_m", report.moved_max_m}};
@@ -146,7 +171,8 @@ std::string loops_text(const LoopReport& report) {
   const LoopCounts& counts = report.counts;
   std::string text = std::to_string(counts.closed) + " closures of " + std::to_string(counts.candidates) +
                      " candidates among " + std::to_string(counts.keyframes) + " keyframes";
-  if (counts.closed > 0) text += "; poses moved by up to " + millimetres(report.moved_max_m);
+  if (report.applied) text += "; poses moved by up to " + millimetres(report.moved_max_m);
+  if (!report.applied && counts.closed > 0) text += "; interrupted before the poses were corrected";
   if (report.delay_ms_max) {
     text += "; " + std::to_string(report.exchanges) + " maps exchanged on the way, a frame delayed by " +
             fixed(*report.delay_ms_max, 1) + " ms at most";

@@ -22,31 +22,37 @@ namespace saccade::cli {
 struct LoopReport {
   LoopMode mode{LoopMode::off};
   LoopCounts counts{};
-  std::size_t exchanges{0};              ///< maps exchanged during the run
-  std::optional<double> delay_ms_max{};  ///< longest time that one frame waited for the closing of loops; online only
-  double moved_max_m{0.0};               ///< farthest that the pose of a frame was moved after the run
+  std::size_t exchanges{0};               ///< maps exchanged during the run
+  std::optional<double> delay_ms_max{};   ///< longest time that one frame waited for the closing of loops; online only
+  std::vector<Pose> T_world_corrected{};  ///< pose of each frame; none where nothing is to be corrected
+  bool applied{false};                    ///< the record's poses, and what was fused, are the corrected ones
+  double moved_max_m{0.0};                ///< farthest that the pose of a frame was moved
 };
 
 /// Frames that are read again, as they were fused.
 [[nodiscard]] ReadFrame frames_again(const RgbdFolderSource& source, const RgbdFolderConfig& config,
                                      const GapFilling& gaps);
 
-/// As fuse_frames, with loops closed beside it. `again` is a second source of the same frames.
+/// As fuse_frames, with loops closed beside it. `again` is a second source of the same frames. The record has the poses
+/// at which the frames are in the map. An interruption gives up what is not closed yet.
 [[nodiscard]] Result<LoopReport> fuse_frames_with_loops(RgbdFolderSource& source, const RgbdFolderSource& again,
                                                         const RgbdFolderConfig& config, Reconstruction& reconstruction,
                                                         TrackingMode mode, const std::optional<GapFilling>& gaps,
                                                         const Executor& executor, ProgressBar& progress,
                                                         FuseRecord& record);
 
-/// Closes the loops of a finished run: corrects the record's poses.
+/// Closes the loops of a finished run. The record stays as it is until the corrected poses are applied.
 [[nodiscard]] Result<LoopReport> close_loops(const RgbdFolderSource& source, const RgbdFolderConfig& config,
                                              const TsdfConfig& map, const Executor& executor, ProgressBar& progress,
-                                             FuseRecord& record);
+                                             const FuseRecord& record);
 
-/// Fuses the record's frames again along its poses, in place of the map so far. An interrupted fusion keeps what it
-/// has.
+/// Gives the record the corrected poses, once all of its frames are fused along them.
+void apply_poses(LoopReport& loops, FuseRecord& record);
+
+/// Fuses the record's frames again along the corrected poses, in place of the map so far, and applies them. Interrupted
+/// or failed, it leaves map and poses as they were.
 [[nodiscard]] Status fuse_record_again(const RgbdFolderSource& source, const RgbdFolderConfig& config,
-                                       const FuseRecord& record, Reconstruction& reconstruction,
+                                       LoopReport& loops, FuseRecord& record, Reconstruction& reconstruction,
                                        const Executor& executor, ProgressBar& progress);
 
 [[nodiscard]] nlohmann::json loops_json(const LoopReport& report);

@@ -16,10 +16,14 @@ Result<std::optional<MapFit>> measure_map(const TsdfSnapshot& map, const Pinhole
                                           const FuseRecord& record, const Executor& executor, ProgressBar& progress) {
   constexpr std::size_t kEvery{10};
   MapFit fit;
-  for (std::size_t i = 0; i < record.fused.size(); i += kEvery) {
+  std::size_t next{0};
+  for (std::size_t i = 0; i < record.fused.size(); ++i) {
+    if (i < next) continue;
     if (interrupted()) return std::optional<MapFit>{};
     progress.update("comparing the map with its frames", i / kEvery, (record.fused.size() + kEvery - 1) / kEvery);
     SACCADE_TRY(const Frame frame, read_frame_again(source, config, record.fused[i].index));
+    if (!has_depth(frame.depth)) continue;  // the next frame stands for it
+    next = i - i % kEvery + kEvery;
     const Stopwatch stopwatch;
     SACCADE_TRY(const SurfaceView view, raycast(map, camera, record.fused[i].T_world_camera, executor));
     fit.raycast_ms.push_back(stopwatch.elapsed_ms());

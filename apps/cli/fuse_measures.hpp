@@ -22,8 +22,8 @@ struct MapFit {
   std::vector<double> raycast_ms;
 };
 
-/// The final map against every 10th fused frame, at the poses they were fused with (docs/reference/metrics.md). nullopt
-/// when the program is interrupted meanwhile.
+/// The final map against every 10th fused frame, or the next one that has depths, at the poses they were fused with
+/// (docs/reference/metrics.md). nullopt when the program is interrupted meanwhile.
 [[nodiscard]] Result<std::optional<MapFit>> measure_map(const TsdfSnapshot& map, const PinholeCamera& camera,
                                                         const RgbdFolderSource& source, const RgbdFolderConfig& config,
                                                         const FuseRecord& record, const Executor& executor,

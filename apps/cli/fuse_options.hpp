@@ -18,11 +18,15 @@ namespace saccade::cli {
 
 class Options;
 
-struct FuseOptions : FrameOptions {
-  /// Recorded poses are not exact: docs/decisions/0021-clearing.md.
-  FuseOptions() { map.clearing_percent = 50; }
-
+/// The map that recorded frames are fused into. Their poses are not exact: docs/decisions/0021-clearing.md.
+[[nodiscard]] inline TsdfConfig recorded_map() {
   TsdfConfig map;
+  map.clearing_percent = 50;
+  return map;
+}
+
+struct FuseOptions : FrameOptions {
+  TsdfConfig map{recorded_map()};
   bool map_size_given{false};
   std::filesystem::path continue_map;
   LoopMode loops{LoopMode::off};

@@ -6,6 +6,7 @@
 #include "context.hpp"
 #include "fuse_frames.hpp"
 #include "fuse_loops.hpp"
+#include "fuse_options.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/surfel_cloud.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -25,65 +26,77 @@ struct SurfelTimes {
   std::vector<double> associate, exposure, guided_filter, integrate, total;
 };
 
+/// Surfels of frames along known poses, with what was counted and timed.
+struct FusedSurfels {
+  SurfelFusion fusion;
+  ModeFilter filter;
+  ExposureCompensation exposure;
+  std::vector<ExposureReport> exposures{};  ///< one for each frame with colour
+  SurfelTimes times{};
+  std::size_t without_color{0};
+  std::size_t evicted_modes{0};
+};
+
 /// Everything between the command line and the summary.
 struct SurfelsRun {
   const SurfelsOptions& options;
   const Executor& executor;
   ProgressBar& progress;
   OpenFrames frames;
-  SurfelFusion fusion;
-  ModeFilter filter;
-  ExposureCompensation exposure;
-  std::vector<ExposureReport> exposures;  ///< one for each frame with colour
-  FuseRecord record;
-  SurfelTimes times;
-  std::optional<LoopReport> loops;
-  std::size_t without_color{0};
-  std::size_t evicted_modes{0};
+  FusedSurfels made;
+  FuseRecord record{};
+  std::optional<LoopReport> loops{};
   std::size_t written{0};
   std::size_t uncolored{0};  ///< seen often enough, but by no frame with colour while others were
 
   [[nodiscard]] double min_weight() const { return options.min_weight(record.fused.size()); }
 };
 
+Result<FusedSurfels> no_surfels(const SurfelsOptions& options) {
+  SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(options.fusion));
+  SACCADE_TRY(ModeFilter filter, ModeFilter::create(options.filter));
+  SACCADE_TRY(ExposureCompensation exposure, ExposureCompensation::create());
+  return FusedSurfels{std::move(fusion), std::move(filter), std::move(exposure)};
+}
+
 /// Fuses a frame whose pose is known.
-Status add_frame(SurfelsRun& run, Frame& frame) {
+Status add_frame(const SurfelsRun& run, Frame& frame, FusedSurfels& made) {
   const PinholeCamera& camera = run.frames.source->camera();
   SACCADE_TRY(const SurfelFusionReport fused, run.options.exposure_compensation
-                                                  ? run.fusion.add_frame(frame, camera, run.exposure, run.executor)
-                                                  : run.fusion.add_frame(frame, camera, run.executor));
-  if (fused.exposure) run.exposures.push_back(*fused.exposure);
+                                                  ? made.fusion.add_frame(frame, camera, made.exposure, run.executor)
+                                                  : made.fusion.add_frame(frame, camera, run.executor));
+  if (fused.exposure) made.exposures.push_back(*fused.exposure);
   ModeFilterReport filtered;
   if (run.options.filtered()) {
-    SACCADE_TRY(filtered, run.filter.add_frame(frame, run.fusion.association(), run.executor));
+    SACCADE_TRY(filtered, made.filter.add_frame(frame, made.fusion.association(), run.executor));
   }
-  if (!fused.has_color) ++run.without_color;
-  run.evicted_modes += filtered.evicted_modes;
+  if (!fused.has_color) ++made.without_color;
+  made.evicted_modes += filtered.evicted_modes;
   const double associate_ms = fused.points_ms + fused.index_ms + fused.associate_ms;
   const double integrate_ms = fused.integrate_ms + filtered.integrate_ms + filtered.move_ms;
-  run.times.associate.push_back(associate_ms);
-  run.times.exposure.push_back(fused.exposure_ms);
-  run.times.guided_filter.push_back(filtered.guided_filter_ms);
-  run.times.integrate.push_back(integrate_ms);
-  run.times.total.push_back(associate_ms + fused.exposure_ms + filtered.guided_filter_ms + integrate_ms);
+  made.times.associate.push_back(associate_ms);
+  made.times.exposure.push_back(fused.exposure_ms);
+  made.times.guided_filter.push_back(filtered.guided_filter_ms);
+  made.times.integrate.push_back(integrate_ms);
+  made.times.total.push_back(associate_ms + fused.exposure_ms + filtered.guided_filter_ms + integrate_ms);
   return {};
 }
 
 /// Tracks a frame against the surfels; the first defines the world.
 Result<FrameReport> track_surfels(SurfelsRun& run, RgbdTracker& tracker, const Frame& frame) {
   FrameReport report;
-  if (run.fusion.map().size() == 0) {
+  if (run.made.fusion.map().size() == 0) {
     report.T_world_camera = frame.T_world_camera.value_or(Pose::Identity());
     return report;
   }
   const PinholeCamera& camera = run.frames.source->camera();
-  return tracker.track(surface_of_surfels(run.fusion.map(), camera, run.executor), frame, camera, run.executor);
+  return tracker.track(surface_of_surfels(run.made.fusion.map(), camera, run.executor), frame, camera, run.executor);
 }
 
 /// With poses that are given nothing is tracked; else the surfels or a TSDF map of the same frames say where the camera
 /// is.
 Status fuse_surfels(SurfelsRun& run) {
-  SACCADE_TRY(Reconstruction reconstruction, Reconstruction::create({}));
+  SACCADE_TRY(Reconstruction reconstruction, Reconstruction::create({recorded_map(), IcpConfig{}}));
   RgbdTracker tracker;
   const bool by_surfels =
       run.frames.tracking == TrackingMode::rgbd && run.options.track_against == TrackedSurface::surfels;
@@ -100,7 +113,7 @@ Status fuse_surfels(SurfelsRun& run) {
       if (report.status != FrameReport::Status::fused) return report;
       frame.T_world_camera = report.T_world_camera;
     }
-    SACCADE_CHECK(add_frame(run, frame));
+    SACCADE_CHECK(add_frame(run, frame, run.made));
     report.T_world_camera = *frame.T_world_camera;
     return report;
   };
@@ -110,33 +123,31 @@ Status fuse_surfels(SurfelsRun& run) {
   return {};
 }
 
-/// Closes the loops of the tracked poses. Where that moves any, fuses all surfels again along the new ones.
+/// Closes the loops of the tracked poses. Where that moves any, fuses all surfels again along the new ones. Interrupted
+/// or failed, it leaves surfels and poses as they were.
 Status close_surfel_loops(SurfelsRun& run) {
   const RgbdFolderSource& source = *run.frames.source;
-  SACCADE_TRY(run.loops, close_loops(source, run.frames.folder, TsdfConfig{}, run.executor, run.progress, run.record));
-  if (run.loops->counts.closed == 0 || interrupted()) return {};
-  SACCADE_TRY(run.fusion, SurfelFusion::create(run.options.fusion));
-  SACCADE_TRY(run.filter, ModeFilter::create(run.options.filter));
-  SACCADE_TRY(run.exposure, ExposureCompensation::create());
-  run.exposures.clear();
-  run.times = {};
-  run.without_color = run.evicted_modes = 0;
+  SACCADE_TRY(run.loops,
+              close_loops(source, run.frames.folder, recorded_map(), run.executor, run.progress, run.record));
+  if (run.loops->T_world_corrected.empty()) return {};
+  SACCADE_TRY(FusedSurfels again, no_surfels(run.options));
   const ReadFrame read = frames_again(source, run.frames.folder, run.record.gaps);
-  std::size_t done{0};
-  for (const FusedFrame& fused : run.record.fused) {
-    if (interrupted()) break;
-    run.progress.update("fusing surfels along corrected poses", done++, run.record.fused.size());
-    SACCADE_TRY(Frame frame, read(fused.index));
-    frame.T_world_camera = fused.T_world_camera;
-    SACCADE_CHECK(add_frame(run, frame));
+  for (std::size_t i = 0; i < run.record.fused.size(); ++i) {
+    if (interrupted()) return {};
+    run.progress.update("fusing surfels along corrected poses", i, run.record.fused.size());
+    SACCADE_TRY(Frame frame, read(run.record.fused[i].index));
+    frame.T_world_camera = run.loops->T_world_corrected.at(i);
+    SACCADE_CHECK(add_frame(run, frame, again));
   }
+  run.made = std::move(again);
+  apply_poses(*run.loops, run.record);
   return {};
 }
 
 /// Before the work, of the folder; after it, of the frames that were used.
 Status check_color(const SurfelsRun& run) {
-  const bool has_color =
-      run.frames.source->info().has_color && (run.record.fused.empty() || run.without_color < run.record.fused.size());
+  const bool has_color = run.frames.source->info().has_color &&
+                         (run.record.fused.empty() || run.made.without_color < run.record.fused.size());
   if (!run.options.filtered() || has_color) return {};
   return Error{Errc::not_found, "no frame has a colour image, which the mode filter needs; use --mode-filter off",
                run.options.frames.string()};
@@ -147,7 +158,7 @@ Status write_picture(const SurfelsRun& run, std::span<const SurfelMode> winners)
   const Viewpoint view{run.frames.source->camera(), run.record.fused[run.record.fused.size() / 2].T_world_camera};
   Sheet sheet;
   const auto add = [&](const char* title, std::span<const SurfelMode> modes) {
-    const SurfelPoints points = surfel_points(run.fusion.map(), modes, run.min_weight());
+    const SurfelPoints points = surfel_points(run.made.fusion.map(), modes, run.min_weight());
     sheet.panels.push_back({draw_surfels(points, view, run.executor), title, {}, {}, {}});
   };
   if (run.options.mode_filter != ModeFilterUse::on) add("averages", {});
@@ -158,7 +169,7 @@ Status write_picture(const SurfelsRun& run, std::span<const SurfelMode> winners)
 /// Nothing where no surfel was seen often enough.
 Status write_clouds(SurfelsRun& run) {
   run.progress.update("writing", 0, 0);
-  const SurfelMap& map = run.fusion.map();
+  const SurfelMap& map = run.made.fusion.map();
   const double least = run.min_weight();
   const auto seen = std::count_if(map.discs.begin(), map.discs.end(),
                                   [&](const SurfelDisc& disc) { return double(disc.weight) >= least; });
@@ -167,7 +178,7 @@ Status write_clouds(SurfelsRun& run) {
   if (run.written == 0) return {};
   std::vector<SurfelMode> winners;
   if (run.options.filtered()) {
-    winners = run.filter.winners(run.executor);
+    winners = run.made.filter.winners(run.executor);
     if (!run.options.places_of_modes()) put_at_averages(winners, map);
     SACCADE_CHECK(write_surfel_cloud(run.options.out, map, winners, least));
   }
@@ -178,22 +189,30 @@ Status write_clouds(SurfelsRun& run) {
 
 Outcome nothing_written(const SurfelsRun& run) {
   float most{0.0F};
-  for (const SurfelDisc& disc : run.fusion.map().discs) most = std::max(most, disc.weight);
+  for (const SurfelDisc& disc : run.made.fusion.map().discs) most = std::max(most, disc.weight);
   return Outcome{.empty = "no surfel has a confidence of " + fixed(run.min_weight(), 1) + ", the greatest is " +
                           fixed(double(most), 1) + ": see --min-confidence; nothing was written"};
+}
+
+/// Says where the surfels along the tracked poses are.
+Error loops_failed(const SurfelsRun& run, Error failure) {
+  if (run.written == 0) return failure;
+  failure.message += "; the surfels of the " + std::to_string(run.record.fused.size()) +
+                     " frames along their tracked poses are " + run.options.out.string();
+  return failure;
 }
 
 /// Gains relative to the first frame; null without compensation.
 json exposure_json(const SurfelsRun& run) {
   if (!run.options.exposure_compensation) return nullptr;
   const auto [least, most] =
-      std::minmax_element(run.exposures.begin(), run.exposures.end(),
+      std::minmax_element(run.made.exposures.begin(), run.made.exposures.end(),
                           [](const ExposureReport& a, const ExposureReport& b) { return a.gain < b.gain; });
-  const auto untold = std::count_if(run.exposures.begin(), run.exposures.end(),
+  const auto untold = std::count_if(run.made.exposures.begin(), run.made.exposures.end(),
                                     [](const ExposureReport& report) { return !report.estimated; });
-  return {{"min", run.exposures.empty() ? 1.0 : least->gain},
-          {"max", run.exposures.empty() ? 1.0 : most->gain},
-          {"frames", run.exposures.size()},
+  return {{"min", run.made.exposures.empty() ? 1.0 : least->gain},
+          {"max", run.made.exposures.empty() ? 1.0 : most->gain},
+          {"frames", run.made.exposures.size()},
           {"not_estimated", untold}};
 }
 
@@ -218,29 +237,29 @@ json result_json(const SurfelsRun& run) {
           {"loops", run.loops ? loops_json(*run.loops) : json{}},
           {"interrupted", interrupted()},
           {"frames", run.record.fused.size()},
-          {"frames_without_color", run.without_color},
+          {"frames_without_color", run.made.without_color},
           {"lost_frames", left_out_json(run.record.lost)},
           {"skipped", left_out_json(run.record.skipped)},
-          {"surfels", run.fusion.map().size()},
+          {"surfels", run.made.fusion.map().size()},
           {"written", run.written},
           {"uncolored", run.uncolored},
           {"min_confidence", run.min_weight()},
           {"picture", run.options.picture.empty() ? json(nullptr) : json(run.options.picture.string())},
-          {"evicted_modes", run.evicted_modes},
+          {"evicted_modes", run.made.evicted_modes},
           {"bytes_per_surfel",
-           {{"map", double(run.fusion.map().memory_bytes()) / double(run.fusion.map().size())},
-            {"modes", double(run.filter.memory_bytes()) / double(run.fusion.map().size())}}},
+           {{"map", double(run.made.fusion.map().memory_bytes()) / double(run.made.fusion.map().size())},
+            {"modes", double(run.made.filter.memory_bytes()) / double(run.made.fusion.map().size())}}},
           {"image_sigma", run.options.fusion.image_sigma},
           {"choice", run.options.filtered() ? json(kModeChoiceNames.of(run.options.choice)) : json(nullptr)},
           {"places", kSurfelPlacesNames.of(places)},
           {"as_printed", run.options.as_printed},
           {"exposure", exposure_json(run)},
           {"ms_per_frame",
-           {{"associate", median_json(run.times.associate)},
-            {"exposure", median_json(run.times.exposure)},
-            {"guided_filter", median_json(run.times.guided_filter)},
-            {"integrate", median_json(run.times.integrate)},
-            {"total", median_json(run.times.total)}}},
+           {{"associate", median_json(run.made.times.associate)},
+            {"exposure", median_json(run.made.times.exposure)},
+            {"guided_filter", median_json(run.made.times.guided_filter)},
+            {"integrate", median_json(run.made.times.integrate)},
+            {"total", median_json(run.made.times.total)}}},
           {"peak_rss_bytes", peak_rss_bytes()}};
 }
 
@@ -252,15 +271,15 @@ std::string surfels_text(const SurfelsRun& run) {
                              " lost, " + std::to_string(record.skipped.size()) + " skipped");
   summary.line("tracking", to_string(run.frames.tracking));
   if (run.loops) summary.line("loops", loops_text(*run.loops));
-  summary.line("surfels", std::to_string(run.fusion.map().size()) + ", of which " + std::to_string(run.written) +
+  summary.line("surfels", std::to_string(run.made.fusion.map().size()) + ", of which " + std::to_string(run.written) +
                               " have a confidence of at least " + fixed(run.min_weight(), 1) + " and are written");
   if (run.uncolored > 0) {
     summary.line("left out", std::to_string(run.uncolored) + " surfels that no frame with colour saw");
   }
-  summary.line("per frame", fixed(median(run.times.associate), 1) + " ms associate, " +
-                                fixed(median(run.times.guided_filter), 1) + " ms guided filter, " +
-                                fixed(median(run.times.integrate), 1) + " ms integrate (medians)");
-  if (!run.exposures.empty()) {
+  summary.line("per frame", fixed(median(run.made.times.associate), 1) + " ms associate, " +
+                                fixed(median(run.made.times.guided_filter), 1) + " ms guided filter, " +
+                                fixed(median(run.made.times.integrate), 1) + " ms integrate (medians)");
+  if (!run.made.exposures.empty()) {
     const json exposure = exposure_json(run);
     summary.line("exposure", "gains of " + fixed(exposure["min"].get<double>(), 2) + " to " +
                                  fixed(exposure["max"].get<double>(), 2) + " of the first frame's");
@@ -294,37 +313,23 @@ class Surfels final : public Command {
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     SACCADE_TRY(OpenFrames frames, open_frames(surfels_));
-    SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(surfels_.fusion));
-    SACCADE_TRY(ModeFilter filter, ModeFilter::create(surfels_.filter));
-    SACCADE_TRY(ExposureCompensation exposure, ExposureCompensation::create());
-    SurfelsRun run{surfels_,
-                   context.executor(),
-                   context.bar(),
-                   std::move(frames),
-                   std::move(fusion),
-                   std::move(filter),
-                   std::move(exposure),
-                   {},
-                   {},
-                   {},
-                   {},
-                   0,
-                   0,
-                   0,
-                   0};
+    SACCADE_TRY(FusedSurfels none, no_surfels(surfels_));
+    SurfelsRun run{surfels_, context.executor(), context.bar(), std::move(frames), std::move(none)};
     SACCADE_CHECK(check_color(run));
     SACCADE_CHECK(check_closing(surfels_.loops, run.frames.tracking));
     SACCADE_CHECK(check_outputs(surfels_, context.global()));
     context.lap("open");
     SACCADE_CHECK(fuse_surfels(run));
     context.lap("frames");
-    if (run.fusion.map().size() == 0) return nothing_fused(run.record, surfels_.frames);
+    if (run.made.fusion.map().size() == 0) return nothing_fused(run.record, surfels_.frames);
+    Status closed;
     if (surfels_.loops == LoopMode::end && !interrupted()) {
-      SACCADE_CHECK(close_surfel_loops(run));
+      closed = close_surfel_loops(run);
       context.lap("loops");
     }
     SACCADE_CHECK(check_color(run));
     SACCADE_CHECK(write_clouds(run));
+    if (!closed) return loops_failed(run, closed.error());
     if (run.written == 0) return nothing_written(run);
     context.lap("write");
     Outcome outcome{.result = result_json(run), .text = surfels_text(run)};
@@ -332,7 +337,7 @@ class Surfels final : public Command {
     warn_of_left_out(run.record, outcome);
     warn_of_damage(surfels_.frames, run.frames.source->info(), outcome);
     if (interrupted()) {
-      outcome.cut_short = "interrupted after " + std::to_string(run.times.total.size()) +
+      outcome.cut_short = "interrupted after " + std::to_string(run.made.times.total.size()) +
                           " frames; what they gave is in " + surfels_.out.string();
     }
     return outcome;

@@ -67,5 +67,83 @@ TEST_F(FuseLoops, GivenPosesAreNotCorrected) {
   EXPECT_NE(outcome.err.find("--tracking icp"), std::string::npos) << outcome.err;
 }
 
+/// A small room whose loop closes, in the colours of which frames are tracked.
+class FuseClosedLoops : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (run_program({"info", "--json", "-"}).json().at("result").at("loops").is_null()) {
+      GTEST_SKIP() << "this build lacks libceres-dev";
+    }
+    make_loop("80,60");
+  }
+  void make_loop(const std::string& size) const {
+    const Outcome made =
+        run_program({"scene", "sequence", "loop:1", "--image-size", size, "--frames", "60", "--pose-noise", "off",
+                     "--depth-noise", "off", "--color-noise", "off", "--quiet", "--out", frames().string()});
+    ASSERT_EQ(made.status, 0) << made.err;
+  }
+  [[nodiscard]] fs::path frames() const { return folder_ / "frames"; }
+  [[nodiscard]] Arguments fused(const std::string& name, const Arguments& more) const {
+    return Arguments{"fuse", frames().string(), "--out",        (folder_ / name).string(), "--voxel-size",
+                     "0.03", "--no-mesh",       "--no-pictures"} +
+           more;
+  }
+  [[nodiscard]] Arguments surfels(const std::string& name, const std::string& loops) const {
+    return {"surfels", frames().string(), "--tracking", "rgbd", "--loops", loops, "--out", (folder_ / name).string()};
+  }
+  /// Fusing the frames along the trajectory of a run gives its map.
+  void expect_map_of_trajectory(const std::string& name) const {
+    const Outcome again = run_program(
+        fused("again", {"--tracking", "forced", "--poses", (folder_ / name / "trajectory.txt").string(), "--force"}));
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_TRUE(text_of(folder_ / "again" / "map.sacmap") == text_of(folder_ / name / "map.sacmap"));
+  }
+  TempFolder folder_;
+};
+
+TEST_F(FuseClosedLoops, AnInterruptionLeavesMapAndTrajectoryTogether) {
+  for (const std::string loops : {"end", "online"}) {
+    RunningProgram program{fused(loops, {"--tracking", "rgbd", "--loops", loops})};
+    ASSERT_TRUE(program.wait_for("fusing along corrected poses")) << program.err();
+    program.send(SIGINT);
+    const Outcome outcome = program.finish();
+    const nlohmann::json result = nlohmann::json::parse(text_of(folder_ / loops / "run.json")).at("result");
+    EXPECT_GT(result.at("loops").at("closed"), 0);
+    if (!result.at("loops").at("applied").get<bool>()) {
+      EXPECT_EQ(outcome.status, 130) << outcome.err;
+      EXPECT_NE(outcome.out.find("interrupted before"), std::string::npos) << outcome.out;
+    }
+    expect_map_of_trajectory(loops);
+  }
+}
+
+/// Surfels are compared in voxels of 5.8 mm, whatever their images: some 20 s.
+class FuseClosedLoopsEvidence : public FuseClosedLoops {};
+
+TEST_F(FuseClosedLoopsEvidence, AnInterruptionLosesNoSurfels) {
+  make_loop("128,96");
+  ASSERT_EQ(run_program(surfels("open.ply", "off")).status, 0);
+  ASSERT_EQ(run_program(surfels("closed.ply", "end")).status, 0);
+  EXPECT_NE(text_of(folder_ / "open.ply"), text_of(folder_ / "closed.ply"));
+  RunningProgram program{surfels("cut.ply", "end")};
+  ASSERT_TRUE(program.wait_for("fusing surfels along corrected poses")) << program.err();
+  program.send(SIGINT);
+  EXPECT_NE(program.finish().status, 3);
+  const std::string cut = text_of(folder_ / "cut.ply");
+  EXPECT_TRUE(cut == text_of(folder_ / "open.ply") || cut == text_of(folder_ / "closed.ply"));
+}
+
+TEST_F(FuseClosedLoops, FramesThatCannotBeReadAgainLeaveTheMap) {
+  RunningProgram program{fused("run", {"--tracking", "rgbd", "--loops", "end"})};
+  ASSERT_TRUE(program.wait_for("looking for loops")) << program.err();
+  fs::rename(frames(), folder_ / "away");
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("map.sacmap"), std::string::npos) << outcome.err;
+  fs::rename(folder_ / "away", frames());
+  EXPECT_FALSE(fs::exists(folder_ / "run" / "run.json"));
+  expect_map_of_trajectory("run");
+}
+
 }  // namespace
 }  // namespace saccade::test

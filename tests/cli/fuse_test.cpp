@@ -163,6 +163,31 @@ TEST_F(Fuse, ContinuingWithIcpStartsAtTheFirstPose) {
   EXPECT_EQ(outcome.json().at("result").at("lost"), 0);
 }
 
+TEST_F(Fuse, ContinuingWithoutPosesStartsAtTheLastTrackedPose) {
+  for (const auto& file : fs::directory_iterator{frames()}) {
+    if (file.path().string().ends_with(".pose.txt")) fs::remove(file);
+  }
+  fused({"--tracking", "icp", "--no-pictures", "--no-mesh", "--count", "18"});
+  const auto went_on = [&](const fs::path& map) {
+    const Outcome outcome =
+        run_program({"fuse", frames().string(), "--first", "18", "--continue", map.string(), "--out",
+                     (folder_ / "more").string(), "--quiet", "--no-pictures", "--json", "-", "--force", "--no-mesh"});
+    const nlohmann::json document = outcome.json();  // none where no frame is tracked
+    return document.is_object() ? document.at("result").at("frames").get<int>() : 0;
+  };
+  EXPECT_EQ(went_on(run() / "map.sacmap"), 3);
+  fs::copy_file(run() / "map.sacmap", folder_ / "alone.sacmap");  // without its trajectory, from the first pose
+  EXPECT_LT(went_on(folder_ / "alone.sacmap"), 3);
+}
+
+TEST_F(Fuse, AnEmptyFirstFrameTellsNothingOfTheOthers) {
+  ASSERT_TRUE(write_png16(frames() / "frame-000000.depth.png", Image16{160, 120, 0}));
+  const nlohmann::json result = fused({"--count", "3", "--no-mesh", "--no-pictures"}).at("result");
+  EXPECT_EQ(result.at("frames"), 3);
+  EXPECT_GT(result.at("depth_residual_m").at("valid_pixels").get<int>(), 0);
+  EXPECT_GT(result.at("depth_residual_m").at("share").get<double>(), 0.5);
+}
+
 TEST_F(Fuse, MaskAndRangeAndWorkspaceReachTheMap) {
   const auto pixels = [&](const Arguments& more) {
     return fused(Arguments{"--no-pictures", "--no-mesh", "--count", "1"} + more)

@@ -46,6 +46,7 @@ struct BackgroundLoops::State {
   std::size_t exchanges{0};
   // For the thread that fuses alone:
   Pose T_world_last{Pose::Identity()};  ///< in the reconstruction's world
+  std::vector<Pose> in_map{};           ///< pose of each frame in the reconstruction's map
   // For the other thread alone, until it ends:
   std::size_t added{0};      ///< frames in the closer
   std::vector<Pose> used{};  ///< poses along which the map was fused again last
@@ -165,7 +166,9 @@ BackgroundLoops::BackgroundLoops(LoopCloser closer, const TsdfConfig& map, const
   state_->thread = std::thread{[this] { state_->run(); }};
 }
 
-BackgroundLoops::~BackgroundLoops() {
+BackgroundLoops::~BackgroundLoops() { give_up(); }
+
+void BackgroundLoops::give_up() {
   {
     const std::lock_guard lock{state_->mutex};
     state_->stopped = true;
@@ -187,6 +190,7 @@ void BackgroundLoops::fused(const Pose& T_world_camera, Frame frame) {
     if (state.newest.size() > kKeptImages) state.newest.pop_front();
   }
   state.T_world_last = T_world_camera;
+  state.in_map.push_back(T_world_camera);
   state.changed.notify_all();
 }
 
@@ -196,6 +200,7 @@ bool BackgroundLoops::correct(Reconstruction& reconstruction) {
   if (!lock.owns_lock() || !state.ready || state.ready->done != state.frames.size()) return false;
   state.T_world_last = state.ready->T_world_camera.back();
   state.old_map = reconstruction.exchange_map(std::move(state.ready->map), state.T_world_last);
+  state.in_map = std::move(state.ready->T_world_camera);
   state.ready.reset();
   ++state.exchanges;
   state.changed.notify_all();
@@ -212,6 +217,8 @@ Status BackgroundLoops::finish() {
   if (state.thread.joinable()) state.thread.join();
   return state.failure;
 }
+
+std::vector<Pose> BackgroundLoops::poses_in_map() const { return state_->in_map; }
 
 std::vector<Pose> BackgroundLoops::poses() const { return state_->closer.poses(); }
 const LoopCounts& BackgroundLoops::counts() const { return state_->closer.counts(); }

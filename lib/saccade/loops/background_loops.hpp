@@ -37,6 +37,13 @@ class BackgroundLoops {
   /// frames and of ray casting, from any time since the start.
   [[nodiscard]] Status finish();
 
+  /// Gives up what is not done yet. Then no frame may follow; poses and counts are those of what was done.
+  void give_up();
+
+  /// Returns the pose at which each frame is in the reconstruction's map: that of the last exchange, and those handed
+  /// over since. In the order of fused().
+  [[nodiscard]] std::vector<Pose> poses_in_map() const;
+
   /// After finish(): the corrected pose of every frame, in the order of fused(); what was counted; the closures.
   [[nodiscard]] std::vector<Pose> poses() const;
   [[nodiscard]] const LoopCounts& counts() const;

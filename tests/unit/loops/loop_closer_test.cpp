@@ -136,6 +136,14 @@ TEST_F(LoopClosing, InTheBackgroundTheMapIsExchanged) {
   ASSERT_TRUE(exchanged);
   EXPECT_LT((reconstruction.last_pose()->translation() - carried.T_world_true.back().translation()).norm(), 0.01);
   EXPECT_GT(reconstruction.map().content().grid.usage().bricks(), 100U);
+  const std::vector<Pose> in_map = loops.poses_in_map();  // along which the frames give this map
+  ASSERT_EQ(in_map.size(), carried.frames.size());
+  EXPECT_EQ(in_map.back().matrix(), reconstruction.last_pose()->matrix());
+  TsdfMap again = TsdfMap::create(coarse_map()).value();
+  for (std::size_t i = 0; i < in_map.size(); ++i) {
+    ASSERT_TRUE(again.integrate(carried.camera, carried.frames[i].depth, in_map[i], executor));
+  }
+  EXPECT_EQ(again.content().grid.usage().dense_bricks, reconstruction.map().content().grid.usage().dense_bricks);
   const Status finished = loops.finish();
   ASSERT_TRUE(finished) << finished.error().to_string();
   EXPECT_LT(carried.end_error_m(loops.poses()), 0.005);
