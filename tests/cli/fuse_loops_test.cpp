@@ -55,6 +55,25 @@ TEST_F(FuseLoops, SurfelsAreFusedOnceWhereNothingCloses) {
   EXPECT_NE(given.err.find("--tracking icp"), std::string::npos) << given.err;
 }
 
+TEST_F(FuseLoops, SurfelsAreTrackedAgainstTheMapOfFuse) {
+  const Arguments six{"--count", "6", "--quiet"};
+  const auto surfels = [&](const Arguments& tracking, const std::string& out) {
+    return run_program(
+        Arguments{"surfels", (folder_ / "frames").string(), "--mode-filter", "off", "--out", (folder_ / out).string()} +
+        tracking + six);
+  };
+  ASSERT_EQ(surfels({"--tracking", "icp"}, "tracked.ply").status, 0);
+  ASSERT_EQ(run_program(Arguments{"fuse", (folder_ / "frames").string(), "--tracking", "icp", "--no-mesh",
+                                  "--no-pictures", "--out", (folder_ / "run").string()} +
+                        six)
+                .status,
+            0);
+  ASSERT_EQ(
+      surfels({"--tracking", "forced", "--poses", (folder_ / "run" / "trajectory.txt").string()}, "given.ply").status,
+      0);
+  EXPECT_TRUE(text_of(folder_ / "tracked.ply") == text_of(folder_ / "given.ply"));
+}
+
 TEST_F(FuseLoops, GivenPosesAreNotCorrected) {
   if (solver().is_null()) {
     const Outcome refused = loops({"--tracking", "icp", "--loops", "end"});

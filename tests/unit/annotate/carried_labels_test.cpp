@@ -60,6 +60,17 @@ TEST_F(CarriedLabelsTest, EachPointTakesTheLabelOfTheNearest) {
   EXPECT_EQ(carried({}, 4).paint, found.paint);
 }
 
+TEST_F(CarriedLabelsTest, ManyPointsAtOnePlaceReachAsFarAsOne) {
+  const CarriedLabels once = carried();
+  const std::vector<Eigen::Vector3f> places_m = first_.positions_m;
+  const std::vector<std::uint32_t> labels = labels_;
+  for (int copy = 1; copy < 12; ++copy) {
+    first_.positions_m.insert(first_.positions_m.end(), places_m.begin(), places_m.end());
+    labels_.insert(labels_.end(), labels.begin(), labels.end());
+  }
+  EXPECT_EQ(carried().paint, once.paint);
+}
+
 TEST_F(CarriedLabelsTest, WhatHasALabelKeepsIt) {
   apply(PaintPoints{{210, 211, 212}, 7});
   const std::uint32_t click = 399;
