@@ -79,7 +79,14 @@ TEST_F(AnnotateFolder, SessionsAreListedAndExported) {
   EXPECT_NE(table.out.find("b.csv     12000   100.0 %"), std::string::npos) << table.out;
 }
 
-TEST_F(AnnotateFolder, SeedsBeginWhatIsNotBegun) {  // in a folder that is not there
+TEST_F(AnnotateFolder, TheFolderOfSessionsThatAreBegunIsMade) {
+  const nlohmann::json result = result_of({"--session", path("new"), "--seeds", path("clouds")});
+  EXPECT_EQ(result["mean"]["begun"], 3);
+  EXPECT_EQ(names_in(path("new")), (std::vector<std::string>{"a.sacann", "b.sacann", "c.sacann"}));
+}
+
+TEST_F(AnnotateFolder, SeedsBeginWhatIsNotBegun) {
+  fs::create_directory(path("sessions"));
   const Arguments sessions{"--session", path("sessions")};
   ASSERT_EQ(
       result_of(sessions + Arguments{"--script", write("s.jsonl", "{\"do\": \"clear\"}")}, "clouds/b.csv")["actions"],

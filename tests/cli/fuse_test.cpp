@@ -248,12 +248,15 @@ TEST_F(FuseInterrupted, KeepsWhatWasDone) {
   EXPECT_EQ(outcome.status, 130) << outcome.err;
   EXPECT_NE(outcome.err.find("interrupted after"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find((folder_ / "run").string()), std::string::npos) << outcome.err;
+  const std::string go_on = " --continue " + (folder_ / "run" / "map.sacmap").string();
   const nlohmann::json document = nlohmann::json::parse(text_of(folder_ / "run" / "run.json"), nullptr, false);
   expect_envelope(document, "fuse");
   const nlohmann::json& result = document.at("result");
   EXPECT_EQ(result.at("interrupted"), true);
   EXPECT_GE(result.at("frames").get<int>(), 3);
   EXPECT_LT(result.at("frames").get<int>(), 1199);
+  const std::size_t done = result.at("frames").get<std::size_t>() + result.at("skipped").size();
+  EXPECT_NE(outcome.err.find("go on with --first " + std::to_string(done) + go_on), std::string::npos) << outcome.err;
   ASSERT_GE(result.at("skipped").size(), 1U);
   EXPECT_EQ(result.at("skipped").at(0).at("frame"), name(3));
   EXPECT_TRUE(load_map(folder_ / "run" / "map.sacmap"));
