@@ -260,6 +260,15 @@ Error save_before_failure(const FuseRun& run, const RunFolder& out, const TsdfSn
   return failure;
 }
 
+/// Options with which an interrupted run goes on, where frames are left and no loops are to be closed among all of
+/// them.
+std::string how_to_go_on(const FuseRun& run, std::size_t frames) {
+  const std::size_t done = run.record.fused.size() + run.record.lost.size() + run.record.skipped.size();
+  if (done >= frames || run.options.loops != LoopMode::off) return {};
+  return "; go on with --first " + std::to_string(run.folder.first + done * run.folder.every_nth) + " --continue " +
+         (std::filesystem::path{run.out} / "map.sacmap").string() + " and another --out";
+}
+
 class Fuse final : public Command {
  public:
   [[nodiscard]] CommandInfo info() const override {
@@ -313,8 +322,8 @@ class Fuse final : public Command {
     warn_of_left_out(run.record, outcome);
     warn_of_damage(fuse_.frames, run.info, outcome);
     if (interrupted()) {
-      outcome.cut_short =
-          "interrupted after " + std::to_string(run.record.fused.size()) + " frames; what they gave is in " + run.out;
+      outcome.cut_short = "interrupted after " + std::to_string(run.record.fused.size()) +
+                          " frames; what they gave is in " + run.out + how_to_go_on(run, source->size().value_or(0));
     }
     return outcome;
   }

@@ -18,7 +18,7 @@ std::vector<TrackedFrame> tracked_frames(const FuseRecord& record) {
   return frames;
 }
 
-double farthest_m(const std::vector<Pose>& T_world_camera, const FuseRecord& record) {
+double farthest_move_m(const std::vector<Pose>& T_world_camera, const FuseRecord& record) {
   double farthest_m{0.0};
   for (std::size_t i = 0; i < record.fused.size(); ++i) {
     const Eigen::Vector3d moved = T_world_camera.at(i).translation() - record.fused[i].T_world_camera.translation();
@@ -101,7 +101,7 @@ Result<LoopReport> fuse_frames_with_loops(RgbdFolderSource& source, const RgbdFo
   report.delay_ms_max = delay_ms_max;
   if (finished && report.counts.closed + report.exchanges > 0 && !interrupted()) {
     report.T_world_corrected = loops.poses();
-    report.moved_max_m = farthest_m(report.T_world_corrected, record);
+    report.moved_max_m = farthest_move_m(report.T_world_corrected, record);
   }
   take_poses(loops.poses_in_map(), record);
   if (!finished && !record.failure) record.failure = finished.error();
@@ -122,7 +122,7 @@ Result<LoopReport> close_loops(const RgbdFolderSource& source, const RgbdFolderC
   report.counts = closer.counts();
   if (report.counts.closed > 0) {
     report.T_world_corrected = closer.poses();
-    report.moved_max_m = farthest_m(report.T_world_corrected, record);
+    report.moved_max_m = farthest_move_m(report.T_world_corrected, record);
   }
   return report;
 }
