@@ -117,24 +117,25 @@ class FuseClosedLoops : public ::testing::Test {
     ASSERT_EQ(again.status, 0) << again.err;
     EXPECT_TRUE(text_of(folder_ / "again" / "map.sacmap") == text_of(folder_ / name / "map.sacmap"));
   }
-  TempFolder folder_;
-};
-
-TEST_F(FuseClosedLoops, AnInterruptionLeavesMapAndTrajectoryTogether) {
-  for (const std::string loops : {"end", "online"}) {
-    RunningProgram program{fused(loops, {"--tracking", "rgbd", "--loops", loops})};
+  void expect_whole_after_interruption(const std::string& loops) const {
+    RunningProgram program{fused("run", {"--tracking", "rgbd", "--loops", loops})};
     ASSERT_TRUE(program.wait_for("fusing along corrected poses")) << program.err();
     program.send(SIGINT);
     const Outcome outcome = program.finish();
-    const nlohmann::json result = nlohmann::json::parse(text_of(folder_ / loops / "run.json")).at("result");
+    const nlohmann::json result = nlohmann::json::parse(text_of(folder_ / "run" / "run.json")).at("result");
     EXPECT_GT(result.at("loops").at("closed"), 0);
     if (!result.at("loops").at("applied").get<bool>()) {
       EXPECT_EQ(outcome.status, 130) << outcome.err;
       EXPECT_NE(outcome.out.find("interrupted before"), std::string::npos) << outcome.out;
     }
-    expect_map_of_trajectory(loops);
+    expect_map_of_trajectory("run");
   }
-}
+  TempFolder folder_;
+};
+
+TEST_F(FuseClosedLoops, AnInterruptionLeavesMapAndTrajectoryTogether) { expect_whole_after_interruption("end"); }
+
+TEST_F(FuseClosedLoops, BesideTheFramesToo) { expect_whole_after_interruption("online"); }
 
 /// Surfels are compared in voxels of 5.8 mm, whatever their images: some 20 s.
 class FuseClosedLoopsEvidence : public FuseClosedLoops {};
