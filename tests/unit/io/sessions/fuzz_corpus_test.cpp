@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "saccade/arm/urdf.hpp"
 #include "saccade/devices/internal/joint_messages.hpp"
@@ -13,6 +15,7 @@
 #include "saccade/io/clouds/las_io.hpp"
 #include "saccade/io/clouds/pcd_io.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/clouds/surfel_array.hpp"
 #include "saccade/io/clouds/text_cloud.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/npy_io.hpp"
@@ -69,7 +72,11 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
                           return name == "scan.bin" ? parse_kitti_scan(bytes).ok() : parse_kitti_labels(bytes).ok();
                         }),
             2U);
-  EXPECT_GE(check_seeds("npy", [](const auto& content, const auto&) { return parse_npy(as_byte_span(content)).ok(); }),
+  EXPECT_GE(check_seeds("npy",
+                        [](const auto& content, const std::string& name) {
+                          const std::span<const std::byte> bytes = as_byte_span(content);
+                          return name == "surfels.npy" ? decode_surfels(bytes).ok() : parse_npy(bytes).ok();
+                        }),
             4U);
   EXPECT_GE(
       check_seeds(
