@@ -310,7 +310,7 @@ std::size_t Neighbourhood::building_bytes(std::size_t points, const Neighbourhoo
 
 Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const NeighbourhoodConfig& config,
                                            const Executor& executor, const Progress& progress,
-                                           std::shared_ptr<const DiskMemory> disk) {
+                                           const std::shared_ptr<const DiskMemory>& disk) {
   constexpr std::size_t kStages{3};
   SACCADE_CHECK(config.validate());
   SACCADE_CHECK(cloud.validate());

@@ -55,7 +55,7 @@ class Neighbourhood {
   /// points), 9 K + 12 after; of these, 13 K + 20 and 9 K on `disk` where there is one.
   [[nodiscard]] static Result<Neighbourhood> build(const PointCloud& cloud, const NeighbourhoodConfig& config,
                                                    const Executor& executor, const Progress& progress = {},
-                                                   std::shared_ptr<const DiskMemory> disk = {});
+                                                   const std::shared_ptr<const DiskMemory>& disk = {});
 
   /// Returns an estimate of the memory that `build` takes, in bytes.
   [[nodiscard]] static std::size_t building_bytes(std::size_t points, const NeighbourhoodConfig& config);
