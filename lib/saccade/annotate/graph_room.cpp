@@ -13,9 +13,9 @@ Result<Neighbourhood> build_graph(const PointCloud& cloud, const NeighbourhoodCo
   if (!room.needs_disk(cloud.positions_m.size(), config)) {
     return Neighbourhood::build(cloud, config, executor, progress);
   }
-  SACCADE_TRY(auto disk, DiskMemory::in(room.folder));
+  SACCADE_TRY(const auto disk, DiskMemory::in(room.folder));
   try {
-    return Neighbourhood::build(cloud, config, executor, progress, std::move(disk));
+    return Neighbourhood::build(cloud, config, executor, progress, disk);
   } catch (const DiskFull& full) {
     return Error{Errc::io_failure, full.what(), "the neighbourhood graph"};
   }
