@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 namespace saccade {
 namespace {
@@ -66,64 +64,6 @@ double GroundTruth::to_supports_m(const Vector3d& p, double beyond_m) const {
 }
 
 bool GroundTruth::inside_solid(const Vector3d& p) const { return data_->bodies.contain(p); }
-
-std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& map, const Executor& executor) {
-  const double e = map.config.voxel_size_m;
-  const Box& workspace = truth.scene().scene().workspace;
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Vector3d high = -low;
-  for (const ObjectMesh& object : truth.scene().meshes()) {
-    if (object.support) continue;
-    for (const Eigen::Vector3f& vertex : object.mesh.vertices) {
-      low = low.cwiseMin(vertex.cast<double>());
-      high = high.cwiseMax(vertex.cast<double>());
-    }
-  }
-  low = (low - Vector3d::Constant(kNearObjects_m)).cwiseMax(workspace.min);
-  high = (high + Vector3d::Constant(kNearObjects_m)).cwiseMin(workspace.max);
-  if (!(low.array() < high.array()).all()) return 0;
-  const IndexBox box{voxel_at(low, e), voxel_at(high, e) + Index3{1, 1, 1}};
-  const auto counts = [&](const Index3& voxel) {
-    const Vector3d p = voxel_center(voxel, e);
-    return map.grid.state(voxel) == VoxelState::unknown && contains(workspace, p) &&
-           truth.to_objects_m(p, 2.0 * kNearObjects_m) <= kNearObjects_m && !truth.inside_solid(p);
-  };
-  const auto in_layer = [&](std::size_t layer) {
-    std::size_t count = 0;
-    box.layer(layer).for_each([&](const Index3& voxel) { count += counts(voxel) ? 1 : 0; });
-    return count;
-  };
-  std::vector<std::size_t> layers(static_cast<std::size_t>(box.size().z));
-  executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t layer = begin; layer < end; ++layer) layers[layer] = in_layer(layer);
-  });
-  return std::accumulate(layers.begin(), layers.end(), std::size_t{0});
-}
-
-ObservedGain newly_known(const GroundTruth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,
-                         const Executor& executor) {
-  const double e = after.config.voxel_size_m;
-  const IndexBox box = voxels_with_center_in(truth.scene().scene().workspace, e);
-  if (box.empty()) return {};
-  std::vector<ObservedGain> layers(static_cast<std::size_t>(box.size().z));
-  const auto add_layer = [&](std::size_t layer) {
-    box.layer(layer).for_each([&](const Index3& voxel) {
-      if (after.grid.state(voxel) == VoxelState::unknown || before.grid.state(voxel) != VoxelState::unknown) return;
-      ++layers[layer].voxels;
-      const bool near = truth.to_objects_m(voxel_center(voxel, e), 2.0 * kAtObject_m) <= kAtObject_m;
-      layers[layer].near_objects += near ? 1 : 0;
-    });
-  };
-  executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t layer = begin; layer < end; ++layer) add_layer(layer);
-  });
-  ObservedGain total;
-  for (const ObservedGain& layer : layers) {
-    total.voxels += layer.voxels;
-    total.near_objects += layer.near_objects;
-  }
-  return total;
-}
 
 bool looks_at_object(const GroundTruth& truth, const Pose& T_world_camera) {
   constexpr double kStep_m{0.01};

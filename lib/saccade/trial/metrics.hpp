@@ -90,6 +90,12 @@ struct ObservedGain {
 
   /// Tells whether at least a quarter of the newly known voxels lies at objects, so that the view showed one.
   [[nodiscard]] bool reveals_object() const { return voxels > 0 && 4 * near_objects >= voxels; }
+  ObservedGain& operator+=(const ObservedGain& other) {
+    voxels += other.voxels;
+    near_objects += other.near_objects;
+    return *this;
+  }
+  [[nodiscard]] ObservedGain operator+(const ObservedGain& other) const { return ObservedGain{*this} += other; }
 };
 constexpr double kAtObject_m{0.05};
 

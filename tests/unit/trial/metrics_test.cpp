@@ -185,6 +185,34 @@ TEST(Metrics, SpaceThatWasSeenIsNoLongerUnknown) {
   EXPECT_LT(three, one);
 }
 
+/// Counts voxel by voxel what unknown_near_objects and newly_known count by cubes.
+TEST(Metrics, VoxelsNearObjectsAreThoseThatEachVoxelsDistanceTells) {
+  const Box& workspace = truth().scene().scene().workspace;
+  const TsdfSnapshot before = seen_from_one_side(1).content();
+  const TsdfSnapshot after = seen_from_one_side(3).content();
+  const double e = after.config.voxel_size_m;
+  const auto unknown = [](const TsdfSnapshot& map, const Index3& voxel) {
+    return map.grid.state(voxel) == VoxelState::unknown;
+  };
+  std::size_t near{0};
+  ObservedGain gain;
+  voxels_with_center_in(workspace, e).for_each([&](const Index3& voxel) {
+    const Vector3d p = voxel_center(voxel, e);
+    const double distance_m = truth().to_objects_m(p, 1.0);
+    if (unknown(after, voxel)) {
+      near += distance_m <= kNearObjects_m && !truth().inside_solid(p) ? 1 : 0;
+    } else if (unknown(before, voxel)) {
+      gain += {1, distance_m <= kAtObject_m ? std::size_t{1} : std::size_t{0}};
+    }
+  });
+  EXPECT_EQ(unknown_near_objects(truth(), after, Executor::with_threads(3)), near);
+  const ObservedGain found = newly_known(truth(), before, after, Executor::with_threads(3));
+  EXPECT_EQ(found.voxels, gain.voxels);
+  EXPECT_EQ(found.near_objects, gain.near_objects);
+  EXPECT_GT(near, 100U);
+  EXPECT_GT(gain.near_objects, 100U);
+}
+
 TEST(GroundTruth, NeedsSomethingToSee) {
   Scene bare = small_scene();
   bare.objects.resize(1);
