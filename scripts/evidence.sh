@@ -65,22 +65,26 @@ loops() {  # NAME SCENE:SEED OPTIONS…
   shift 2
   [[ -f $out/$name.done ]] || step "frames_${scene/:/_}" build/release/saccade --quiet scene sequence "$scene" --image-size 240,180 \
     --pose-noise off --out "$frames" --force
-  step "$name" build/release/saccade --quiet fuse "$frames" --tracking icp --voxel-size 0.01 --no-mesh --no-pictures "$@" \
-    --out "$out/run_$name" --force --json "$out/$name.json"
+  step "$name" build/release/saccade --quiet fuse "$frames" --tracking "$tracking" --voxel-size 0.01 --no-mesh --no-pictures "$@" \
+    --out "$out/run_${name//\//_}" --force --json "$out/$name.json"
 }
-for seed in 1 2 3 4 5 6 7 8 9 10; do
-  loops "open_$seed" "loop:$seed"
-  loops "loop_$seed" "loop:$seed" --loops end
-  loops "online_$seed" "loop:$seed" --loops online
-done
-for seed in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-  loops "alike_$seed" "alike:$seed" --loops end
+for tracking in icp rgbd; do
+  places="loops_$tracking"
+  mkdir -p "$out/$places"
+  for seed in 1 2 3 4 5 6 7 8 9 10; do
+    loops "$places/open_$seed" "loop:$seed"
+    loops "$places/loop_$seed" "loop:$seed" --loops end
+    loops "$places/online_$seed" "loop:$seed" --loops online
+  done
+  for seed in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    loops "$places/alike_$seed" "alike:$seed" --loops end
+  done
+  step "loops_table_$tracking" /usr/bin/python3 scripts/evidence_loops.py "$out/$places"
 done
 for mode in off end; do
   step "surfels_loops_$mode" build/release/saccade --quiet surfels "$out/frames_loop_1" --tracking icp --loops "$mode" --out "$out/surfels_loops_$mode.ply" \
     --json "$out/surfels_loops_$mode.json"
 done
-step loops_table /usr/bin/python3 scripts/evidence_loops.py "$out"
 
 echo "Poses beside colour images"
 trajectory="$out/fuse_rgbd_redkitchen_icp/trajectory.txt"

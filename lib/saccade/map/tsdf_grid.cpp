@@ -111,6 +111,12 @@ void TsdfGrid::set_stored(const Index3& sector, std::shared_ptr<const StoredSect
   it->second.set_stored(std::move(stored));
 }
 
+Mask512 TsdfGrid::unknown_in(const Index3& brick) const {
+  const Sector* found = find(parent(brick));
+  if (found == nullptr) return Mask512::all_set();
+  return found->bricks[static_cast<std::size_t>(child_index(brick))].unknown_mask();
+}
+
 Voxel TsdfGrid::voxel(const Index3& voxel) const {
   const Index3 brick = parent(voxel);
   const Sector* sector = find(parent(brick));

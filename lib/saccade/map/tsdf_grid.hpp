@@ -75,6 +75,8 @@ class TsdfGrid {
 
   [[nodiscard]] Voxel voxel(const Index3& voxel) const;
   [[nodiscard]] VoxelState state(const Index3& voxel) const { return state_of(this->voxel(voxel)); }
+  /// Returns the unknown voxels of a brick. Requires a sector that is not away.
+  [[nodiscard]] Mask512 unknown_in(const Index3& brick) const;
   /// Returns nullopt where no colour was fused.
   [[nodiscard]] std::optional<Rgb8> color(const Index3& voxel) const;
 

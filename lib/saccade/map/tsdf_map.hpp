@@ -99,7 +99,7 @@ class TsdfMap {
   std::unique_ptr<MapPager> pager_;  ///< null for a map that is not paged
 };
 
-/// Counts the unknown voxels whose centre lies in the region and in the map's workspace. O(voxels of the region).
+/// Counts the unknown voxels whose centre lies in the region and in the map's workspace. O(bricks of the region).
 [[nodiscard]] std::size_t count_unknown(const TsdfSnapshot& map, const Region& region);
 
 }  // namespace saccade

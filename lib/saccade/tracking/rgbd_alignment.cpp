@@ -136,7 +136,8 @@ RgbdResult align_rgbd(const GreyPoints& measured, const GreyPoints& model, const
   const auto align_in = [&](const IcpConfig& stage, const Pose& start) {
     return align_by(linearize, measured.points, model.points, camera, start, stage).value();
   };
-  const Pose T_far = align_in(config.far, T_model_camera_start).T_model_camera;
+  const Pose T_far =
+      config.looks_far ? align_in(config.far, T_model_camera_start).T_model_camera : T_model_camera_start;
   equations.come_near();
   IcpResult icp = align_in(config.icp, T_far);
   const Pose moved = T_model_camera_start.inverse() * icp.T_model_camera;

@@ -16,6 +16,7 @@ struct RgbdConfig {
                 .max_distance_m = 0.20,
                 .max_normal_angle_rad = 0.9,
                 .converged_m = 1e-4};
+  bool looks_far{true};  ///< whether `far` comes first at all
   IcpConfig icp{.iterations = {10, 8, 6}};
   double color_sigma{5.0};        ///< standard deviation of the difference of grey values, of 0 to 255
   double color_weight{4.0};       ///< weight of the photometric term beside the geometric one; 0: ICP alone

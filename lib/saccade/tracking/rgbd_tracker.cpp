@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/tracking/rgbd_tracker.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "saccade/core/clock.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/tracking/internal/intensity.hpp"
@@ -23,6 +26,11 @@ Result<GreyPoints> measured_points(const Frame& frame, const PinholeCamera& came
                     frame.color ? to_grey(*frame.color, executor) : Image<float>{}};
 }
 
+/// Returns how well a frame fits: the shares of its depths and of its grey values that agree.
+double fit(const FrameReport& report) {
+  return 0.5 * (report.icp.agreement + (report.used_color ? report.color_agreement : report.icp.agreement));
+}
+
 /// Makes a product of many poses a rotation again: a predicted motion would double what is missing with each frame.
 Pose with_rotation(const Pose& T) {
   Pose rigid = T;
@@ -41,6 +49,10 @@ SurfaceAt surface_of_map(const TsdfSnapshot& map, const PinholeCamera& camera, c
 
 Status RgbdTrackerConfig::validate() const {
   SACCADE_CHECK(alignment.validate());
+  if (!(doubtful_deviations >= 0.0 && least_doubt >= 0.0 && most_doubt >= least_doubt)) {
+    return Error{Errc::invalid_argument, "the bounds of a doubtful fit must be positive and in order",
+                 "RGB-D tracking"};
+  }
   return keyframes.validate();
 }
 
@@ -56,23 +68,25 @@ std::vector<Pose> RgbdTracker::starts() const {
   return poses;
 }
 
-Result<FrameReport> RgbdTracker::align_from(const SurfaceAt& surface_at, const GreyPoints& measured,
-                                            const PinholeCamera& camera, const Pose& T_world_start,
-                                            const Executor& executor) const {
+Result<GreyPoints> RgbdTracker::model_at(const SurfaceAt& surface_at, const GreyPoints& measured,
+                                         const PinholeCamera& camera, const Pose& T_world_camera,
+                                         const Executor& executor) const {
+  GreyPoints model;
+  SACCADE_TRY(model.points, surface_at(T_world_camera));
+  const Keyframe* keyframe = measured.grey.empty() ? nullptr : keyframes_.nearest_with_color(T_world_camera);
+  if (keyframe != nullptr) model.grey = grey_of_surface(*keyframe, model.points, camera, T_world_camera, executor);
+  return model;
+}
+
+FrameReport RgbdTracker::align_to(const GreyPoints& model, const GreyPoints& measured, const PinholeCamera& camera,
+                                  const Pose& T_world_start, const RgbdConfig& how, const Executor& executor) {
+  const RgbdResult found = align_rgbd(measured, model, camera, Pose::Identity(), executor, how);
   FrameReport report;
   report.T_world_camera = T_world_start;
-  Stopwatch stopwatch;
-  GreyPoints model;
-  SACCADE_TRY(model.points, surface_at(T_world_start));
-  report.raycast_ms = stopwatch.lap_ms();
-  const Keyframe* keyframe = measured.grey.empty() ? nullptr : keyframes_.nearest_with_color(T_world_start);
-  if (keyframe != nullptr) model.grey = grey_of_surface(*keyframe, model.points, camera, T_world_start, executor);
-  const RgbdResult found = align_rgbd(measured, model, camera, Pose::Identity(), executor, config_.alignment);
-  report.track_ms = stopwatch.lap_ms();
   report.icp = found.icp;
   report.used_color = found.used_color;
   report.color_agreement = found.color_agreement;
-  report.confidence = tracking_confidence(found.icp, config_.alignment.icp);
+  report.confidence = tracking_confidence(found.icp, how.icp);
   if (found.icp.converged) {
     report.T_world_camera = with_rotation(T_world_start * found.icp.T_model_camera);
   } else {
@@ -82,51 +96,71 @@ Result<FrameReport> RgbdTracker::align_from(const SurfaceAt& surface_at, const G
   return report;
 }
 
+bool RgbdTracker::is_usual(double fit) const {
+  const double doubt =
+      std::clamp(config_.doubtful_deviations * usual_deviation_, config_.least_doubt, config_.most_doubt);
+  return usual_fit_ && fit >= *usual_fit_ - doubt;
+}
+
 Result<FrameReport> RgbdTracker::track_from(const SurfaceAt& surface_at, const Frame& frame,
                                             const PinholeCamera& camera, const Pose& T_world_start,
                                             const Executor& executor) {
   SACCADE_TRY(const GreyPoints measured, measured_points(frame, camera, executor));
-  return align_from(surface_at, measured, camera, T_world_start, executor);
+  Stopwatch stopwatch;
+  SACCADE_TRY(const GreyPoints model, model_at(surface_at, measured, camera, T_world_start, executor));
+  const double raycast_ms = stopwatch.lap_ms();
+  FrameReport report = align_to(model, measured, camera, T_world_start, config_.alignment, executor);
+  report.raycast_ms = raycast_ms;
+  report.track_ms = stopwatch.lap_ms();
+  return report;
 }
 
 Result<FrameReport> RgbdTracker::track(const SurfaceAt& surface_at, const Frame& frame, const PinholeCamera& camera,
                                        const Executor& executor) {
-  const Stopwatch stopwatch;
+  Stopwatch stopwatch;
   SACCADE_TRY(const GreyPoints measured, measured_points(frame, camera, executor));
-  const double measured_ms = stopwatch.elapsed_ms();
-  std::optional<FrameReport> first;
+  double track_ms = stopwatch.lap_ms();
   double raycast_ms{0.0};
-  double track_ms{measured_ms};
-  const auto try_from = [&](const Pose& start) -> Result<FrameReport> {
-    SACCADE_TRY(FrameReport report, align_from(surface_at, measured, camera, start, executor));
-    raycast_ms += report.raycast_ms;
-    track_ms += report.track_ms;
+  std::optional<FrameReport> first;
+  std::optional<FrameReport> found;
+  const auto sure = [&] { return found && is_usual(fit(*found)); };
+  const auto model_from = [&](const Pose& start) -> Result<GreyPoints> {
+    stopwatch.lap_ms();
+    SACCADE_TRY(GreyPoints model, model_at(surface_at, measured, camera, start, executor));
+    raycast_ms += stopwatch.lap_ms();
+    return model;
+  };
+  const auto try_from = [&](const GreyPoints& model, const Pose& start, const RgbdConfig& how) {
+    FrameReport report = align_to(model, measured, camera, start, how, executor);
+    track_ms += stopwatch.lap_ms();
     if (!first) first = report;
     return report;
   };
-  std::optional<FrameReport> found;
   const auto keep_better = [&](FrameReport report) {
     if (report.status == FrameReport::Status::lost) return;
-    if (!found || report.icp.agreement > found->icp.agreement) found = std::move(report);
+    if (!found || fit(report) > fit(*found)) found = std::move(report);
   };
-  // A pose that fits worse than those before it may be a false one: the surface as seen from there, or another start,
-  // tells.
-  const auto sure = [&] {
-    return found && usual_agreement_ && found->icp.agreement >= *usual_agreement_ - config_.doubtful_agreement;
-  };
+  RgbdConfig near = config_.alignment;
+  near.looks_far = false;
+  // A pose that fits worse than those before it may be a false one. Pairs that are not far apart, the surface as seen
+  // from that pose, or another start tell.
   for (const Pose& start : starts()) {
-    SACCADE_TRY(FrameReport report, try_from(start));
-    keep_better(std::move(report));
+    SACCADE_TRY(const GreyPoints model, model_from(start));
+    keep_better(try_from(model, start, config_.alignment));
+    if (sure()) break;
+    keep_better(try_from(model, start, near));
     if (sure()) break;
     if (!found) continue;
-    SACCADE_TRY(FrameReport again, try_from(found->T_world_camera));
-    keep_better(std::move(again));
+    const Pose there = found->T_world_camera;
+    SACCADE_TRY(const GreyPoints model_there, model_from(there));
+    keep_better(try_from(model_there, there, config_.alignment));
     if (sure()) break;
   }
   if (!found) {
     const Thumbnail small = thumbnail(measured.grey, measured.points.z);
     for (const Pose& start : keyframes_.most_alike(small, config_.relocalisation_tries)) {
-      SACCADE_TRY(FrameReport report, try_from(start));
+      SACCADE_TRY(const GreyPoints model, model_from(start));
+      FrameReport report = try_from(model, start, config_.alignment);
       const bool certain = report.icp.agreement >= config_.relocalisation_agreement;
       if (report.status == FrameReport::Status::lost || !certain) continue;
       report.relocalised = true;
@@ -134,9 +168,11 @@ Result<FrameReport> RgbdTracker::track(const SurfaceAt& surface_at, const Frame&
       break;
     }
   }
-  if (found)
-    usual_agreement_ =
-        found->icp.agreement + kMemory * (usual_agreement_.value_or(found->icp.agreement) - found->icp.agreement);
+  if (found) {
+    const double change = fit(*found) - usual_fit_.value_or(fit(*found));
+    usual_deviation_ = std::abs(change) + kMemory * (usual_deviation_ - std::abs(change));
+    usual_fit_ = fit(*found) - kMemory * change;
+  }
   FrameReport report = found ? std::move(*found) : std::move(*first);
   report.raycast_ms = raycast_ms;
   report.track_ms = track_ms;

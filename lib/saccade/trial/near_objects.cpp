@@ -40,8 +40,8 @@ class NearVoxels {
       if (distance_m <= within_m_) near.set(child_index(cube.lo));
       return;
     }
-    const Vector3d middle = 0.5 * (voxel_center(lo + cube.lo, voxel_size_m_) +
-                                   voxel_center(lo + cube.hi - Index3{1, 1, 1}, voxel_size_m_));
+    const Vector3d middle =
+        0.5 * (voxel_center(lo + cube.lo, voxel_size_m_) + voxel_center(lo + cube.hi - Index3{1, 1, 1}, voxel_size_m_));
     const double to_corner_m = 0.5 * std::sqrt(3.0) * (edge - 1) * voxel_size_m_;
     const double far_m = within_m_ + to_corner_m + kSlack_m;
     const double distance_m = truth_.to_objects_m(middle, far_m);
@@ -61,12 +61,6 @@ class NearVoxels {
   double voxel_size_m_;
   double within_m_;
 };
-
-Mask512 unknown_in(const TsdfGrid& grid, const Index3& brick) {
-  const Sector* sector = grid.find(parent(brick));
-  return sector == nullptr ? Mask512::all_set()
-                           : sector->bricks[static_cast<std::size_t>(child_index(brick))].unknown_mask();
-}
 
 /// Adds up measure(brick) over the bricks with voxels in the box, layer by layer.
 template <class Count, class Measure>
@@ -102,7 +96,7 @@ std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& m
   const NearVoxels near{truth, e, kNearObjects_m};
   return sum_over_bricks<std::size_t>(box, executor, [&](const Index3& brick) {
     const Index3 lo = brick * kBrickEdge;
-    const Mask512 wanted = unknown_in(map.grid, brick) & voxels_inside(box, lo);
+    const Mask512 wanted = map.grid.unknown_in(brick) & voxels_inside(box, lo);
     std::size_t count = 0;
     if (wanted.none()) return count;
     near.among(wanted & voxels_inside(workspace, lo, e), lo).for_each([&](std::size_t i) {
@@ -121,8 +115,7 @@ ObservedGain newly_known(const GroundTruth& truth, const TsdfSnapshot& before, c
   const NearVoxels near{truth, e, kAtObject_m};
   return sum_over_bricks<ObservedGain>(box, executor, [&](const Index3& brick) {
     const Index3 lo = brick * kBrickEdge;
-    const Mask512 known =
-        unknown_in(before.grid, brick) & ~unknown_in(after.grid, brick) & voxels_inside(box, lo);
+    const Mask512 known = before.grid.unknown_in(brick) & ~after.grid.unknown_in(brick) & voxels_inside(box, lo);
     if (known.none()) return ObservedGain{};
     return ObservedGain{static_cast<std::size_t>(known.count()),
                         static_cast<std::size_t>(near.among(known, lo).count())};

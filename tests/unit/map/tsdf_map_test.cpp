@@ -53,5 +53,27 @@ TEST(TsdfMap, WhatPassesASurfaceByCountsAsMuchAsItIsSaidTo) {
   EXPECT_EQ(value_after(0, 3, 50), 1.0) << "free space is learnt as before";
 }
 
+TEST(TsdfMap, UnknownVoxelsOfARegionAreCountedAsOneByOne) {
+  TsdfConfig config;
+  config.voxel_size_m = 0.01;
+  config.workspace = Box{{-0.2, -0.155, 0.3}, {0.2, 0.2, 1.213}};
+  TsdfMap map = TsdfMap::create(config).value();
+  const PinholeCamera camera{40, 30, 60.0, 60.0, 19.5, 14.5, 0.1, 4.0};
+  ASSERT_TRUE(map.integrate(camera, DepthImage{40, 30, 1.0F}, Pose::Identity(), {}).ok());
+  const std::array<Region, 3> regions{Sphere{{0.1, 0.0, 0.95}, 0.2}, Box{{-0.1, -0.1, 0.2}, {0.1, 0.1, 1.5}},
+                                      Cylinder{{0.0, 0.0, 0.9}, {0.05, 0.1, 1.1}, 0.15}};
+  for (const Region& region : regions) {
+    std::size_t unknown{0};
+    voxels_with_center_in(bounds(region), config.voxel_size_m).for_each([&](const Index3& voxel) {
+      const Eigen::Vector3d p = voxel_center(voxel, config.voxel_size_m);
+      if (!contains(region, p) || !contains(*config.workspace, p)) return;
+      unknown += map.content().grid.state(voxel) == VoxelState::unknown ? 1 : 0;
+    });
+    EXPECT_EQ(count_unknown(map.content(), region), unknown) << region.index();
+    EXPECT_GT(unknown, 100U);
+  }
+  EXPECT_EQ(count_unknown(map.content(), Box{}), 0U);
+}
+
 }  // namespace
 }  // namespace saccade

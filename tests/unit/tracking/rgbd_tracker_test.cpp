@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "saccade/scene/place_scenes.hpp"
 #include "saccade/scene/rendered_sequence.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/tracking/reconstruction.hpp"
@@ -18,26 +19,27 @@ namespace {
 constexpr int kFrames{14};
 constexpr std::size_t kWholePath{120};  ///< frames in which the whole path is fast: 11 cm and 4.5° between two
 
-/// The first frames of a fast path around the desk, with the noise of its sensor, at 160×120 pixels. Rendered once.
-struct FastSequence {
+struct Sequence {
   PinholeCamera camera;
   std::vector<Frame> frames;
   std::vector<Pose> truth;
 
-  FastSequence() {
-    const SurfelScene scene = surfel_scene("desk").value();
-    RenderedSequenceConfig config = surfel_sensor(scene.sensor).value();
-    config.color = scene.color;
+  /// Renders the views of a sensor, with its noise.
+  Sequence(const Scene& scene, const std::vector<Pose>& poses, RenderedSequenceConfig config, int width) {
     config.pose_noise.reset();
+    const double scale = static_cast<double>(width) / config.camera.width;
     camera = config.camera;
-    const double scale = 160.0 / camera.width;
-    camera = {160, 120, camera.fx * scale, camera.fy * scale, 79.5, 59.5, camera.min_range_m, camera.max_range_m};
+    camera = {width,
+              3 * width / 4,
+              camera.fx * scale,
+              camera.fy * scale,
+              (width - 1) / 2.0,
+              (3 * width / 4 - 1) / 2.0,
+              camera.min_range_m,
+              camera.max_range_m};
     config.camera = camera;
-    std::vector<Pose> poses = hand_held_poses(scene.path, kWholePath);
-    poses.resize(kFrames);
     auto source =
-        RenderedSequence::create(RayScene::build(scene.scene).value(), poses, config, Executor::with_threads(2))
-            .value();
+        RenderedSequence::create(RayScene::build(scene).value(), poses, config, Executor::with_threads(2)).value();
     while (auto frame = source.next().value()) {
       frames.push_back(std::move(*frame));
       truth.push_back(source.truth().T_world_camera);
@@ -45,8 +47,16 @@ struct FastSequence {
   }
 };
 
-const FastSequence& sequence() {
-  static const FastSequence rendered;
+/// The first frames of a fast path around the desk. Rendered once.
+const Sequence& sequence() {
+  static const Sequence rendered = [] {
+    const SurfelScene scene = surfel_scene("desk").value();
+    RenderedSequenceConfig config = surfel_sensor(scene.sensor).value();
+    config.color = scene.color;
+    std::vector<Pose> poses = hand_held_poses(scene.path, kWholePath);
+    poses.resize(kFrames);
+    return Sequence{scene.scene, poses, config, 160};
+  }();
   return rendered;
 }
 
@@ -89,6 +99,32 @@ TEST(RgbdTracker, FollowsFastMotionThatIcpDoesNot) {
     ASSERT_TRUE(rgbd.reports[i].confidence);
     EXPECT_GT(*rgbd.reports[i].confidence, 0.3);
   }
+}
+
+TEST(RgbdTracker, IsNotDrawnAlongARowOfEqualBays) {
+  const PlaceScene bays = place_scene("alike:7").value();
+  std::vector<Pose> poses = carried_poses(bays.path, bays.frames);
+  poses.resize(25);
+  const Sequence passing{bays.scene, poses, surfel_sensor("xtion").value(), 120};
+  const auto last_error_m = [&](const RgbdTrackerConfig& rgbd) {
+    ReconstructionConfig config;
+    config.map.voxel_size_m = 0.02;
+    config.rgbd = rgbd;
+    Reconstruction reconstruction = Reconstruction::create(config).value();
+    Pose found{Pose::Identity()};
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      found = reconstruction
+                  .process(passing.frames[i], passing.camera, TrackingMode::rgbd, passing.truth[i],
+                           Executor::with_threads(2))
+                  .value()
+                  .T_world_camera;
+    }
+    return (found.translation() - passing.truth.back().translation()).norm();
+  };
+  RgbdTrackerConfig without_doubt;
+  without_doubt.least_doubt = without_doubt.most_doubt = 1.0;
+  EXPECT_LT(last_error_m({}), 0.03);
+  EXPECT_GT(last_error_m(without_doubt), 0.1) << "pairs far apart lead to the next bay";
 }
 
 TEST(RgbdTracker, ThreadsNeverChangeABit) {
