@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSlack_m{1e-9};  // above the rounding of distances, below any voxel
+constexpr double kRounding_m{1e-9};  // above the rounding of distances, below any voxel
 
 /// Finds the voxels of one brick near objects.
 class NearVoxels {
@@ -43,10 +43,10 @@ class NearVoxels {
     const Vector3d middle =
         0.5 * (voxel_center(lo + cube.lo, voxel_size_m_) + voxel_center(lo + cube.hi - Index3{1, 1, 1}, voxel_size_m_));
     const double to_corner_m = 0.5 * std::sqrt(3.0) * (edge - 1) * voxel_size_m_;
-    const double far_m = within_m_ + to_corner_m + kSlack_m;
+    const double far_m = within_m_ + to_corner_m + kRounding_m;
     const double distance_m = truth_.to_objects_m(middle, far_m);
     if (distance_m >= far_m) return;
-    if (distance_m + to_corner_m + kSlack_m <= within_m_) {
+    if (distance_m + to_corner_m + kRounding_m <= within_m_) {
       near = near | asked;
       return;
     }
