@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/scene/solids.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -26,11 +27,23 @@ struct Search {
   double nearest_m;
 };
 
+/// Tells, cheaply, whether the triangle's plane is farther away than that, by more than rounding could explain.
+bool plane_is_beyond(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c, double distance_m) {
+  constexpr double kRounding{1.0 + 1e-9};
+  const Vector3d normal = (b - a).cross(c - a);
+  const double height = normal.dot(p - a);  // times the normal's length
+  return height * height > kRounding * distance_m * distance_m * normal.squaredNorm();
+}
+
 bool visit(RTCPointQueryFunctionArguments* arguments) {
   Search& search = *static_cast<Search*>(arguments->userPtr);
   const auto& [a, b, c] = search.mesh.triangles[arguments->primID];
   const auto corner = [&](std::uint32_t i) -> Vector3d { return search.mesh.vertices[i].cast<double>(); };
-  const double distance_m = (closest_point_on_triangle(search.p, corner(a), corner(b), corner(c)) - search.p).norm();
+  const Vector3d pa = corner(a);
+  const Vector3d pb = corner(b);
+  const Vector3d pc = corner(c);
+  if (plane_is_beyond(search.p, pa, pb, pc, search.nearest_m)) return false;
+  const double distance_m = (closest_point_on_triangle(search.p, pa, pb, pc) - search.p).norm();
   if (distance_m >= search.nearest_m) return false;
   search.nearest_m = distance_m;
   // Rounded up with some margin: single precision must not miss a triangle that is nearer still.
@@ -72,6 +85,23 @@ double MeshDistance::distance_m(const Vector3d& p, double beyond_m) const {
   query.radius = std::nextafter(static_cast<float>(beyond_m * (1.0 + 1e-5)), std::numeric_limits<float>::max());
   rtcPointQuery(impl_->triangles.get(), &query, &context, visit, &search);
   return search.nearest_m;
+}
+
+std::vector<double> MeshDistance::distances_m(std::span<const Eigen::Vector3f> points, double beyond_m,
+                                              const Executor& executor) const {
+  constexpr double kRounding_m{1e-9};  // the bound stays above the distance that is found
+  std::vector<double> distances(points.size());
+  executor.parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    double bound_m = beyond_m;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d p = points[i].cast<double>();
+      distances[i] = distance_m(p, bound_m);
+      if (i + 1 == end) break;
+      const double step_m = (points[i + 1].cast<double>() - p).norm();
+      bound_m = std::min(beyond_m, (distances[i] + step_m) * (1.0 + kRounding_m) + kRounding_m);
+    }
+  });
+  return distances;
 }
 
 }  // namespace saccade

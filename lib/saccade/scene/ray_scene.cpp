@@ -18,8 +18,9 @@ using Eigen::Vector3d;
 struct RayScene::Impl {
   Scene scene;
   std::vector<ObjectMesh> meshes;
-  EmbreeDevice device;    // released last
-  EmbreeScene triangles;  // scene of this device
+  std::vector<Pose> T_object_world;  // one per object
+  EmbreeDevice device;               // released last
+  EmbreeScene triangles;             // scene of this device
 
   [[nodiscard]] Rgb8 color_at(const TriangleHit& hit, const Vector3d& p_world) const;
 };
@@ -59,8 +60,8 @@ Rgb8 RayScene::Impl::color_at(const TriangleHit& hit, const Vector3d& p_world) c
   const TriangleMesh& mesh = meshes[hit.object].mesh;
   Vector3d color;
   if (mesh.colors.empty()) {
-    const Vector3d p_object = object.T_world_object.inverse() * p_world;
-    const Rgb8 plain = paint_at(object, p_object, object.T_world_object.linear().transpose() * hit.normal_world).color;
+    const Pose& to_object = T_object_world[hit.object];
+    const Rgb8 plain = paint_at(object, to_object * p_world, to_object.linear() * hit.normal_world).color;
     color = Vector3d{double(plain[0]), double(plain[1]), double(plain[2])};
   } else {
     const auto& [a, b, c] = mesh.triangles[hit.triangle];
@@ -94,8 +95,10 @@ Result<RayScene> RayScene::build(Scene scene) {
   }
   rtcCommitScene(triangles.get());
   if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) return embree_failed(device.get());
-  return RayScene{
-      std::make_shared<const Impl>(Impl{std::move(scene), std::move(meshes), std::move(device), std::move(triangles)})};
+  std::vector<Pose> T_object_world;
+  for (const SceneObject& object : scene.objects) T_object_world.push_back(object.T_world_object.inverse());
+  return RayScene{std::make_shared<const Impl>(
+      Impl{std::move(scene), std::move(meshes), std::move(T_object_world), std::move(device), std::move(triangles)})};
 }
 
 const Scene& RayScene::scene() const { return impl_->scene; }

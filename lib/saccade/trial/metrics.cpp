@@ -12,11 +12,15 @@ namespace {
 using Eigen::Vector3d;
 
 /// Returns the points of the mesh inside the workspace that do not lie on a support.
-std::vector<Eigen::Vector3f> points_off_supports(const GroundTruth& truth, const TriangleMesh& mesh, double within_m) {
+std::vector<Eigen::Vector3f> points_off_supports(const GroundTruth& truth, const TriangleMesh& mesh, double within_m,
+                                                 const Executor& executor) {
   const Box& workspace = truth.scene().scene().workspace;
+  const std::vector<Eigen::Vector3f> all =
+      sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m(), workspace).points;
+  const std::vector<double> to_supports_m = truth.to_supports_m(all, 2.0 * within_m, executor);
   std::vector<Eigen::Vector3f> points;
-  for (const Eigen::Vector3f& point : sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m(), workspace).points) {
-    if (truth.to_supports_m(point.cast<double>(), 2.0 * within_m) > within_m) points.push_back(point);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (to_supports_m[i] > within_m) points.push_back(all[i]);
   }
   return points;
 }
@@ -63,6 +67,17 @@ double GroundTruth::to_supports_m(const Vector3d& p, double beyond_m) const {
   return data_->supports ? data_->supports->distance_m(p, beyond_m) : beyond_m;
 }
 
+std::vector<double> GroundTruth::to_objects_m(std::span<const Eigen::Vector3f> points, double beyond_m,
+                                              const Executor& executor) const {
+  return data_->objects.distances_m(points, beyond_m, executor);
+}
+
+std::vector<double> GroundTruth::to_supports_m(std::span<const Eigen::Vector3f> points, double beyond_m,
+                                               const Executor& executor) const {
+  if (!data_->supports) return std::vector<double>(points.size(), beyond_m);
+  return data_->supports->distances_m(points, beyond_m, executor);
+}
+
 bool GroundTruth::inside_solid(const Vector3d& p) const { return data_->bodies.contain(p); }
 
 bool looks_at_object(const GroundTruth& truth, const Pose& T_world_camera) {
@@ -100,25 +115,17 @@ Metrics measure_mesh(const GroundTruth& truth, const TriangleMesh& mesh, double 
 
   const std::vector<Eigen::Vector3f>& wanted = truth.observable_points();
   const auto share = [](double count, std::size_t of) { return count / static_cast<double>(of); };
-  std::vector<double> missing_m(wanted.size());
-  executor.parallel_for(wanted.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      missing_m[i] = reconstruction.distance_m(wanted[i].cast<double>(), farthest_m);
-  });
+  const std::vector<double> missing_m = reconstruction.distances_m(wanted, farthest_m, executor);
   const auto within = [](const std::vector<double>& distances, double limit) {
     return static_cast<double>(std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
   };
   metrics.coverage = share(within(missing_m, within_m), wanted.size());
 
-  const std::vector<Eigen::Vector3f> found = points_off_supports(truth, mesh, within_m);
+  const std::vector<Eigen::Vector3f> found = points_off_supports(truth, mesh, within_m, executor);
   if (found.empty()) return metrics;
-  std::vector<double> wrong_m(found.size());
-  executor.parallel_for(found.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d p = found[i].cast<double>();
-      wrong_m[i] = truth.to_supports_m(p, truth.to_objects_m(p, farthest_m));
-    }
-  });
+  std::vector<double> wrong_m = truth.to_objects_m(found, farthest_m, executor);
+  const std::vector<double> to_supports_m = truth.to_supports_m(found, farthest_m, executor);
+  for (std::size_t i = 0; i < found.size(); ++i) wrong_m[i] = std::min(wrong_m[i], to_supports_m[i]);
   metrics.accuracy_m = mean(wrong_m);
   metrics.chamfer_m = 0.5 * (mean(wrong_m) + mean(missing_m));
   const double precision = share(within(wrong_m, kFScoreDistance_m), wrong_m.size());

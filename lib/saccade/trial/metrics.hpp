@@ -39,6 +39,11 @@ class GroundTruth {
   /// Return the distance to the nearest surface of an object, or of a support; beyond_m where none is nearer.
   [[nodiscard]] double to_objects_m(const Eigen::Vector3d& p, double beyond_m) const;
   [[nodiscard]] double to_supports_m(const Eigen::Vector3d& p, double beyond_m) const;
+  /// Return these distances of many points (MeshDistance::distances_m).
+  [[nodiscard]] std::vector<double> to_objects_m(std::span<const Eigen::Vector3f> points, double beyond_m,
+                                                 const Executor& executor) const;
+  [[nodiscard]] std::vector<double> to_supports_m(std::span<const Eigen::Vector3f> points, double beyond_m,
+                                                  const Executor& executor) const;
   /// Tells whether p lies inside any object or support.
   [[nodiscard]] bool inside_solid(const Eigen::Vector3d& p) const;
 

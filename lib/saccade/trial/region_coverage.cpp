@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/trial/metrics.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "saccade/scene/surface_samples.hpp"
 
@@ -12,13 +12,9 @@ namespace {
 /// Counts the points within that distance of the mesh.
 std::size_t covered(const std::vector<Eigen::Vector3f>& points, const MeshDistance& mesh, double within_m,
                     const Executor& executor) {
-  std::vector<std::uint8_t> near(points.size());
-  executor.parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      near[i] = mesh.distance_m(points[i].cast<double>(), 2.0 * within_m) <= within_m ? 1 : 0;
-    }
-  });
-  return std::accumulate(near.begin(), near.end(), std::size_t{0});
+  const std::vector<double> distances_m = mesh.distances_m(points, 2.0 * within_m, executor);
+  return static_cast<std::size_t>(
+      std::count_if(distances_m.begin(), distances_m.end(), [&](double distance) { return distance <= within_m; }));
 }
 
 }  // namespace
