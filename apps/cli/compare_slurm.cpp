@@ -12,6 +12,7 @@
 #include "compare_shards.hpp"
 #include "saccade/core/fnv1a.hpp"
 #include "saccade/io/files/file_io.hpp"
+#include "shell_quoted.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -139,14 +140,6 @@ std::string counted(std::size_t count, const std::string& one) {
 }
 
 }  // namespace
-
-std::string shell_quoted(const std::string& word) {
-  constexpr std::string_view kPlain{"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._:,/=+-"};
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted{"'"};
-  for (const char c : word) quoted += c == '\'' ? std::string{"'\\''"} : std::string{c};
-  return quoted + '\'';
-}
 
 std::string ranges_of(const std::vector<std::size_t>& numbers) {
   std::string text;

@@ -25,8 +25,6 @@ struct SliceJob {
 [[nodiscard]] std::string merge_script(const SliceJob& job);
 /// "0-3,7": numbers and ranges of them, for --array.
 [[nodiscard]] std::string ranges_of(const std::vector<std::size_t>& numbers);
-/// The word as a shell reads it back.
-[[nodiscard]] std::string shell_quoted(const std::string& word);
 /// The arguments of the comparison alone: without those of submission, of --out and of the scaffold.
 [[nodiscard]] std::vector<std::string> arguments_of_comparison(const std::vector<std::string>& given);
 

@@ -17,6 +17,7 @@
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/map/mesh.hpp"
+#include "shell_quoted.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -266,7 +267,7 @@ std::string how_to_go_on(const FuseRun& run, std::size_t frames) {
   const std::size_t done = run.record.fused.size() + run.record.lost.size() + run.record.skipped.size();
   if (done >= frames || run.options.loops != LoopMode::off) return {};
   return "; go on with --first " + std::to_string(run.folder.first + done * run.folder.every_nth) + " --continue " +
-         (std::filesystem::path{run.out} / "map.sacmap").string() + " and another --out";
+         shell_quoted((std::filesystem::path{run.out} / "map.sacmap").string()) + " and another --out";
 }
 
 class Fuse final : public Command {

@@ -16,6 +16,7 @@
 #include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/scene/scene_yaml.hpp"
+#include "shell_quoted.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -206,7 +207,7 @@ Result<Description> describe_urdf(const fs::path& path) {
   described.line("arm", read.arm.name() + ", " + std::to_string(read.arm.dof()) + " joints");
   described.line("reach", fixed(reach_bound_m(read.arm), 3) + " m at most, from the first joint to the camera");
   described.line("camera", read.arm.description().camera_name);
-  described.line("more", "saccade robot check " + path.string());
+  described.line("more", "saccade robot check " + shell_quoted(path.string()));
   described.result = {{"kind", "arm"},
                       {"arm",
                        {{"name", read.arm.name()},

@@ -24,7 +24,7 @@ class MeshDistance {
 
   /// Returns the distance to the nearest triangle, or `beyond_m` where none is nearer. Computed in double precision.
   [[nodiscard]] double distance_m(const Eigen::Vector3d& p, double beyond_m) const;
-  /// Returns distance_m for each point. Points that follow one another closely cost a third: the distance of one bounds
+  /// Returns distance_m for each point. Points that follow one another closely cost less: the distance of one bounds
   /// that of the next. The thread count changes no bit.
   [[nodiscard]] std::vector<double> distances_m(std::span<const Eigen::Vector3f> points, double beyond_m,
                                                 const Executor& executor) const;

@@ -46,8 +46,8 @@ struct PairPixels {
       float terms[kPairTerms];
       const bool pair =
           pair_products(a.task, column, row, {level.z[at], level.nx[at], level.ny[at], level.nz[at]}, terms);
-      for (int k = 0; k < kPairTerms; ++k)
-        a.terms[static_cast<std::size_t>(k) * count + pixel] = pair ? terms[k] : 0.0F;
+      float* term_of_pixel = a.terms + pixel;
+      for (int k = 0; k < kPairTerms; ++k, term_of_pixel += count) *term_of_pixel = pair ? terms[k] : 0.0F;
       if (pair) atomic_add(shared.pairs, 1U);
     } else if (thread.index == 0 && shared.pairs != 0) {
       atomic_add(*a.pairs, shared.pairs);
@@ -72,7 +72,7 @@ struct SumLanes {
     const int term = at / kPairLanes % kPairTerms;
     const int chunk = at / kPairLanes / kPairTerms;
     const LevelPoints& level = a.task.measured;
-    const float* const terms = a.terms + static_cast<std::size_t>(term) * level.width * level.height;
+    const float* const terms = a.terms + static_cast<std::ptrdiff_t>(term) * level.width * level.height;
     const int past_chunk = (chunk + 1) * a.rows_per_chunk;
     const int end = past_chunk < level.height ? past_chunk : level.height;
     float sum{0.0F};

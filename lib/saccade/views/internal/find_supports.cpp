@@ -241,9 +241,9 @@ std::vector<std::uint32_t> hull_columns(std::span<const std::uint32_t> seen, std
       begin = std::min(begin, x);
       end = std::max(end, x);
     }
-    constexpr double kSlack{1e-9};  // keeps corners in their own row
+    constexpr double kCornerSlack{1e-9};  // keeps corners in their own row
     const auto first = static_cast<std::uint32_t>(y) * columns_per_row;
-    for (double x = std::ceil(begin - kSlack); x <= end + kSlack; x += 1.0) {
+    for (double x = std::ceil(begin - kCornerSlack); x <= end + kCornerSlack; x += 1.0) {
       columns.push_back(first + static_cast<std::uint32_t>(x));
     }
   }
