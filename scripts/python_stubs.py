@@ -17,7 +17,7 @@ import numpy.typing
 '''
 TYPES = ((r"\bsaccade\._saccade\.trial\.", ""), (r"\bsaccade\._saccade\.", ""), (r"numpy\.ndarray\[([\w.]+)\]", r"numpy.typing.NDArray[\1]"),
          (r"\bos\.PathLike\b", "Any"), (r"\bhandle\b|\bobject\b", "Any"), (r"\bfunction\b", "Callable[..., Any]"), (r"\biterable\b", "Iterable[Any]"), (r"\bsequence\b", "Sequence[Any]"))
-ARRAY = r"\bnumpy\.ndarray\b"  # as an argument: anything that NumPy makes an array of
+ARRAY = r"\bnumpy\.ndarray\b"  # as an argument: an array with elements of any type
 
 
 def split_signature(line):
@@ -57,7 +57,7 @@ def argument(text):
         return name
     if name == "self":
         return name
-    kind = re.sub(ARRAY, "numpy.typing.ArrayLike", typed(kind))
+    kind = re.sub(ARRAY, "numpy.typing.NDArray[Any]", typed(kind))
     return f"{name}: {kind}{' = ...' if has_default else ''}"
 
 

@@ -29,14 +29,25 @@ SimulatedRunConfig planner_config(const PinholeCamera& camera, const py::object&
   return config;
 }
 
-std::vector<Region> regions_to_look_at(const py::object& regions, const TsdfSnapshot& map) {
+std::vector<Region> regions_to_look_at(const py::object& regions, const TsdfSnapshot& map,
+                                       const NamedPlanner& strategy) {
   std::vector<Region> found;
   if (!regions.is_none()) {
-    for (const py::handle region : regions) found.push_back(to_region(py::reinterpret_borrow<py::object>(region)));
+    if (!strategy.looks_at_regions) {
+      throw py::value_error{"the strategy " + strategy.name +
+                            " explores the whole workspace, and takes no regions; sphere and random do"};
+    }
+    for (const py::handle region : regions) {
+      found.push_back(to_region(py::reinterpret_borrow<py::object>(region)));
+      take(validate(found.back()));
+    }
   } else if (map.config.workspace) {
     found.emplace_back(*map.config.workspace);
   }
-  if (found.empty()) throw py::value_error{"name regions, or give the map a workspace"};
+  if (found.empty()) {
+    throw py::value_error{strategy.looks_at_regions ? "name regions, or give the map a workspace"
+                                                    : "give the map a workspace"};
+  }
   return found;
 }
 
@@ -61,7 +72,8 @@ class OwnExplorer {
     config_.exploration.oscillation_frames = oscillation_frames;
     config_.exploration.good_enough = good_enough;
     take(config_.exploration.validate());
-    planner_.emplace(make_planner(config_, config_.camera, regions_to_look_at(regions, map_.snapshot())));
+    planner_.emplace(
+        make_planner(config_, config_.camera, regions_to_look_at(regions, map_.snapshot(), config_.strategy)));
   }
 
   py::dict scan(const py::object& poses, py::object progress) {
@@ -75,8 +87,10 @@ class OwnExplorer {
   }
 
   py::dict explore(int max_views, py::object progress) {
-    config_.exploration.max_views = max_views;
-    take(config_.exploration.validate());
+    ExplorerConfig wanted = config_.exploration;
+    wanted.max_views = max_views;
+    take(wanted.validate());
+    config_.exploration = wanted;
     work(std::move(progress), [&](Explorer& explorer) -> Status {
       SACCADE_TRY(run_, explorer.explore(*planner_, run_));
       return {};
@@ -148,7 +162,8 @@ class OwnPlanner {
 
   py::list next_views(const SharedMap& map, std::size_t count, const py::object& taken) {
     const TsdfSnapshot snapshot = map.snapshot();
-    if (!planner_) planner_.emplace(make_planner(config_, config_.camera, regions_to_look_at(regions_, snapshot)));
+    if (!planner_)
+      planner_.emplace(make_planner(config_, config_.camera, regions_to_look_at(regions_, snapshot, config_.strategy)));
     Attempts attempts;
     for (const Pose& pose : to_poses(taken)) attempts.add_skipped(0, pose);
     const auto rank = [&] {

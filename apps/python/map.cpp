@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "map.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/map/voxel_row.hpp"
@@ -13,7 +16,7 @@ SharedMap make_map(double voxel_size_m, const py::object& workspace, double trun
   TsdfConfig config;
   config.voxel_size_m = voxel_size_m;
   config.truncation_vox = truncation_vox;
-  config.free_weight = static_cast<std::uint16_t>(free_weight);
+  config.free_weight = static_cast<std::uint16_t>(std::clamp(free_weight, 0, 0xffff));
   if (clearing_percent < 1 || clearing_percent > 100) throw py::value_error{"clearing_percent must be 1 to 100"};
   config.clearing_percent = static_cast<std::uint8_t>(clearing_percent);
   config.color = color;
@@ -102,6 +105,10 @@ std::vector<Element> flat(const auto& rows) {
 }
 
 py::dict mesh(const SharedMap& map, int min_weight) {
+  constexpr int kMostWeight{std::numeric_limits<std::uint16_t>::max()};
+  if (min_weight < 0 || min_weight > kMostWeight) {
+    throw py::value_error{"min_weight must be 0 to " + std::to_string(kMostWeight)};
+  }
   const TsdfSnapshot snapshot = map.snapshot();
   TriangleMesh extracted;
   {

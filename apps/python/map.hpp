@@ -25,7 +25,12 @@ class SharedMap {
     const std::scoped_lock lock{content->mutex};
     return body(content->map);
   }
-  [[nodiscard]] TsdfSnapshot snapshot() const { return open()->map.snapshot(); }
+  /// Waits without the GIL: who holds the map may be waiting for the GIL, to report progress.
+  [[nodiscard]] TsdfSnapshot snapshot() const {
+    const std::shared_ptr<Content> content = open();
+    const py::gil_scoped_release released;
+    return content->map.snapshot();
+  }
   [[nodiscard]] const Executor& executor() const { return executor_; }
   void close() { content_.reset(); }
 

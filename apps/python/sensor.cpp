@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "convert.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
 
@@ -41,7 +43,12 @@ void bind_sensor(py::module_& module) {
           "scaled_to_width",
           [](const PinholeCamera& camera, int width) {
             if (width < 1) throw py::value_error{"width must be one pixel at least, not " + std::to_string(width)};
-            return camera.scaled_to_width(width);
+            PinholeCamera flat = camera;
+            flat.width = width;
+            take(flat.validate());  // before the height is computed from it
+            const PinholeCamera scaled = camera.scaled_to_width(width);
+            take(scaled.validate());
+            return scaled;
           },
           py::arg("width"), "The camera with `width` pixels across; field of view and range stay.")
       .def("__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; })
@@ -70,7 +77,14 @@ void bind_sensor(py::module_& module) {
   module.def(
       "look_at",
       [](const py::object& position, const py::object& target, const py::object& up, double roll_rad) {
-        return from_pose(look_at(to_point(position), to_point(target), to_point(up), roll_rad));
+        const Eigen::Vector3d from = to_point(position);
+        const Eigen::Vector3d to = to_point(target);
+        const Eigen::Vector3d above = to_point(up);
+        if (!(from.allFinite() && to.allFinite() && above.allFinite() && std::isfinite(roll_rad))) {
+          throw py::value_error{"position, target, up and roll_rad must be finite"};
+        }
+        if (from == to) throw py::value_error{"position and target are the same point: the camera looks nowhere"};
+        return from_pose(look_at(from, to, above, roll_rad));
       },
       py::arg("position"), py::arg("target"), py::arg("up") = py::make_tuple(0.0, 0.0, 1.0), py::arg("roll_rad") = 0.0,
       "T_world_camera, 4 x 4, of a camera at `position` whose optical axis points at `target`.");

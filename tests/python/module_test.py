@@ -83,6 +83,35 @@ class Maps(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "closed"):
             m.ternary()
 
+    def test_threads_that_read_do_not_stop_one_that_writes(self):
+        m = saccade.TsdfMap(voxel_size_m=0.01, workspace=((-0.5, -0.5, 0.0), (0.5, 0.5, 0.6)))
+        camera = saccade.PinholeCamera(160, 120, fx=131.25, fy=131.25, min_range_m=0.3, max_range_m=2.0)
+        depth = np.full((120, 160), 0.8, np.float32)
+        depth[40:80, 53:106] = 0.6
+        pose = saccade.look_at((0, 0, 0.8), (0, 0, 0))
+        region = saccade.Sphere((0, 0, 0.3), 0.2)
+        poses = saccade.view_sphere((0, 0, 0.3))[:50]
+        bodies = [lambda: m.integrate(camera, depth, pose), lambda: saccade.view_gains(m, region, poses, camera),
+                  m.ternary]
+        threads = [threading.Thread(target=lambda body=body: [body() for _ in range(300)], daemon=True) for body in bodies]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join(60)
+            self.assertFalse(thread.is_alive())
+
+    def test_numbers_out_of_range_are_said(self):
+        camera = saccade.PinholeCamera(160, 120, fx=131.25, fy=131.25)
+        m = saccade.TsdfMap(voxel_size_m=0.02, workspace=((-0.5, -0.5, 0.0), (0.5, 0.5, 0.6)))
+        for wrong in (lambda: saccade.TsdfMap(voxel_size_m=0.01, free_weight=65541), lambda: m.mesh(65537),
+                      lambda: m.mesh(-1), lambda: camera.scaled_to_width(1000000), lambda: camera.scaled_to_width(0),
+                      lambda: saccade.look_at((0, 0, 0), (0, 0, 0)), lambda: saccade.look_at((0, 0, np.inf), (0, 0, 0)),
+                      lambda: saccade.ViewPlanner(camera, regions=[saccade.Sphere((0, 0, 0), 0.2)]).next_views(m, 1),
+                      lambda: saccade.ViewPlanner(camera, "sphere", regions=[saccade.Sphere((0, 0, 0), -1)]).next_views(m, 1),
+                      lambda: saccade.ViewPlanner(camera, min_gain=-1.0)):
+            with self.assertRaises(ValueError):
+                wrong()
+
     def test_two_threads_write_one_after_the_other(self):
         m = small_map()
 

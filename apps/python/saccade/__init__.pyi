@@ -24,7 +24,7 @@ class Annotation:
         """Makes points control points no more."""
     def paint(self, points: Any, label: int) -> int:
         """Gives these points, by their indices, a label whatever spreads to them; 0: they follow clicks again."""
-    def select(self, camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, *, rectangle: Any = ..., polygon: Any = ..., stroke: Any = ..., radius_px: float = ..., below_m: float = ..., point_size_px: int = ...) -> numpy.typing.NDArray[numpy.uint32]:
+    def select(self, camera: PinholeCamera, T_world_camera: numpy.typing.NDArray[Any], *, rectangle: Any = ..., polygon: Any = ..., stroke: Any = ..., radius_px: float = ..., below_m: float = ..., point_size_px: int = ...) -> numpy.typing.NDArray[numpy.uint32]:
         """Finds the points that a shape contains in the picture of a camera (thesis 4.2.2). `rectangle`: two opposite corners; `polygon`: corners of a lasso; `stroke`: a line, `radius_px` wide to either side; each in pixels (u, v). `below_m`: metres behind what is seen that are still taken, 0: the surface that is seen, inf: however deep. `point_size_px`: edge of a drawn point. Returns indices, uint32, ascending, for click and paint."""
     def undo(self) -> int:
         """Takes back the latest action. -1: there is none."""
@@ -43,7 +43,7 @@ class Annotation:
 
 class Arm:
     """An arm that plans its way without touching what is known, or not known, to be there; for Explorer's `robot`. Its own body is taken out of the camera's frames."""
-    def __init__(self, robot: str = ..., *, joints: Any = ..., fixtures: Any = ..., start: Any = ..., base: str = ..., tip: str = ..., camera: str = ..., T_flange_camera: Optional[numpy.typing.ArrayLike] = ..., T_world_base: Optional[numpy.typing.ArrayLike] = ...) -> None:
+    def __init__(self, robot: str = ..., *, joints: Any = ..., fixtures: Any = ..., start: Any = ..., base: str = ..., tip: str = ..., camera: str = ..., T_flange_camera: Optional[numpy.typing.NDArray[Any]] = ..., T_world_base: Optional[numpy.typing.NDArray[Any]] = ...) -> None:
         """`robot`: a URDF file or a built-in name. `joints`: an object with position() -> q and execute(t_s, q, dq, report), which follows q (N x joints, radians or metres) at the times t_s (N, seconds), calls report(t, q) on its way, and stops where that returns False; None: simulated. `fixtures`: solid boxes, world frame. `start`: q in the beginning. `base`, `tip`, `camera`: links, where the URDF does not say."""
     @property
     def joint_names(self) -> List[str]:
@@ -209,7 +209,7 @@ class SurfelMap:
     """Small coloured discs on surfaces, from frames with poses (thesis 4.1.1). World frame, metres."""
     def __init__(self, *, mode_filter: bool = ..., choice: str = ..., max_modes: int = ..., image_sigma: float = ..., exposure_compensation: bool = ..., threads: int = ...) -> None:
         """`mode_filter`: of each surfel's colours one that was seen, not a blend; it needs frames with colour. `choice`: sharpened, densest, or heaviest (thesis, eq. 4.11, with depths guided by colour). `exposure_compensation`: colours of each frame are brought to the exposure of the first; `threads`: 0 for all cores."""
-    def integrate(self, camera: PinholeCamera, depth: numpy.typing.ArrayLike, T_world_camera: numpy.typing.ArrayLike, color: Optional[numpy.typing.ArrayLike] = ...) -> dict:
+    def integrate(self, camera: PinholeCamera, depth: numpy.typing.NDArray[Any], T_world_camera: numpy.typing.NDArray[Any], color: Optional[numpy.typing.NDArray[Any]] = ...) -> dict:
         """Fuses a frame; arrays as of TsdfMap.integrate. Returns a dict: points (pixels that count), associated, created, contradicted, gain (of the exposure, or None)."""
     def __len__(self) -> int:
         ...
@@ -222,9 +222,9 @@ class Tracker:
     """Tracks a camera against a TsdfMap (thesis 2.2.1), and fuses its frames into it. Methods return a dict: accepted, T_world_camera (4 x 4), why (where the track is lost), fused; and of ICP rmse_m (of point-to-plane distances, metres), inlier_share, agreement, iterations (0 where none ran); confidence (0 to 1, or None) and relocalised."""
     def __init__(self, map: Any, camera: PinholeCamera, mode: str = ...) -> None:
         """`mode`: icp (from the last pose; `T_hint` is that of the first frame, else the identity), rgbd (as icp, with the colours of fused frames and from the last motion), hint (ICP from `T_hint`) or forced (`T_hint` as it is)."""
-    def track(self, depth: numpy.typing.ArrayLike, T_hint: Optional[numpy.typing.ArrayLike] = ..., color: Optional[numpy.typing.ArrayLike] = ...) -> dict:
+    def track(self, depth: numpy.typing.NDArray[Any], T_hint: Optional[numpy.typing.NDArray[Any]] = ..., color: Optional[numpy.typing.NDArray[Any]] = ...) -> dict:
         """Finds where a depth image, H x W as of TsdfMap.integrate, was taken; map and last pose stay."""
-    def fuse(self, depth: numpy.typing.ArrayLike, T_hint: Optional[numpy.typing.ArrayLike] = ..., color: Optional[numpy.typing.ArrayLike] = ...) -> dict:
+    def fuse(self, depth: numpy.typing.NDArray[Any], T_hint: Optional[numpy.typing.NDArray[Any]] = ..., color: Optional[numpy.typing.NDArray[Any]] = ...) -> dict:
         """As track, and fuses the frame where the track was found. `color`: H x W x 3 uint8."""
     @property
     def T_world_camera(self) -> Any:
@@ -241,7 +241,7 @@ class TsdfMap:
         """Reads a .sacmap file."""
     def save(self, path: str) -> None:
         """Writes a .sacmap file."""
-    def integrate(self, camera: PinholeCamera, depth: numpy.typing.ArrayLike, T_world_camera: numpy.typing.ArrayLike, color: Optional[numpy.typing.ArrayLike] = ...) -> dict:
+    def integrate(self, camera: PinholeCamera, depth: numpy.typing.NDArray[Any], T_world_camera: numpy.typing.NDArray[Any], color: Optional[numpy.typing.NDArray[Any]] = ...) -> dict:
         """Fuses a depth image: H x W, float32 metres or uint16 millimetres along z; 0 or NaN: no return; d < 0: seen free up to |d|. `T_world_camera`: 4 x 4 or 3 x 4. `color`: H x W x 3 uint8. Returns counts and ms."""
     def forget(self, region: Any) -> None:
         """Sets the voxels of a region back to unknown."""
@@ -275,16 +275,16 @@ class ViewPlanner:
 def annotation_score(labels: Any, truth: Any) -> dict:
     """Compares labels with true ones, N whole numbers each, 0 in truth: the point does not count. Returns a dict: points that count, wrong ones, mean_iou over the labels."""
 
-def depth_points(camera: PinholeCamera, depth: numpy.typing.ArrayLike, T_world_camera: Optional[numpy.typing.ArrayLike] = ...) -> numpy.typing.NDArray[numpy.float32]:
+def depth_points(camera: PinholeCamera, depth: numpy.typing.NDArray[Any], T_world_camera: Optional[numpy.typing.NDArray[Any]] = ...) -> numpy.typing.NDArray[numpy.float32]:
     """Returns H x W x 3 float32: the point of each pixel, metres, in the world frame, or in the camera's without a pose; NaN where there is no return within the camera's range."""
 
-def filter_kinect_v2(camera: PinholeCamera, depth: numpy.typing.ArrayLike, *, method: str = ..., baseline_m: float = ..., emitter_side: str = ..., veil_angle_deg: float = ..., shadow_points: bool = ..., veil_points: bool = ..., threads: int = ...) -> tuple:
+def filter_kinect_v2(camera: PinholeCamera, depth: numpy.typing.NDArray[Any], *, method: str = ..., baseline_m: float = ..., emitter_side: str = ..., veil_angle_deg: float = ..., shadow_points: bool = ..., veil_points: bool = ..., threads: int = ...) -> tuple:
     """Removes the wrong points of a Kinect v2's depth image, H x W as of TsdfMap.integrate (thesis 3.1.3). `method`: surface (keeps what lies on a surface) or thesis (Algorithm 5, eq. 3.19). `baseline_m`: from the camera to the emitter, which is on the `emitter_side` left or right of the image. Returns the depth, H x W float32 with 0 where a point was removed, and what each pixel is, H x W uint8: 0 no return, 1 kept, 2 shadow point, 3 veil point."""
 
 def find_actions(times_s: Any, positions_m: Any, *, method: str = ..., as_printed: bool = ...) -> list:
     """Finds where a hand did something. `times_s`: N seconds that never decrease; `positions_m`: N x 3 metres, world frame. `method`: ours (dips of the smoothed speed), gmm-as or zvc (thesis 2.2.4). `as_printed`: formula and thresholds as the thesis prints them. Returns a list of dicts by time: time_s, position_m, saliency (in the unit of the method; larger is more certain), why."""
 
-def guided_filter(depth: numpy.typing.ArrayLike, guide_depth: numpy.typing.ArrayLike, guide_color: numpy.typing.ArrayLike, *, radius_px: int = ..., color_sigma: float = ..., depth_sigma_m: float = ..., threads: int = ...) -> numpy.typing.NDArray[numpy.float32]:
+def guided_filter(depth: numpy.typing.NDArray[Any], guide_depth: numpy.typing.NDArray[Any], guide_color: numpy.typing.NDArray[Any], *, radius_px: int = ..., color_sigma: float = ..., depth_sigma_m: float = ..., threads: int = ...) -> numpy.typing.NDArray[numpy.float32]:
     """Smooths a depth image where its guide, depth H x W metres and colour H x W x 3 uint8, is smooth, and keeps the guide's edges (thesis, Algorithm 7). Returns H x W float32; pixels without depth or guide stay."""
 
 def look_at(position: Any, target: Any, up: Any = ..., roll_rad: float = ...) -> numpy.typing.NDArray[numpy.float64]:

@@ -20,7 +20,7 @@ class SimulatedCamera:
     @property
     def scan(self) -> numpy.typing.NDArray[numpy.float64]:
         """Poses of the scene's initial scan, N x 4 x 4."""
-    def capture(self, T_world_camera: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float32]:
+    def capture(self, T_world_camera: numpy.typing.NDArray[Any]) -> numpy.typing.NDArray[numpy.float32]:
         """Depth, H x W float32, metres along z. The n-th frame of a seed is always the same."""
     def measure(self, map: TsdfMap) -> dict:
         """What a map is worth beside the scene's surface: coverage, accuracy_m, chamfer_m, f_score, unknown_left."""
