@@ -62,6 +62,7 @@ Status check_stems(const std::vector<fs::path>& clouds) {
 Result<std::vector<fs::path>> clouds_of(const AnnotateOptions& options) {
   if (!options.of_folder()) return in_number_order(options.clouds, false);
   SACCADE_TRY(std::vector<fs::path> clouds, list_clouds(options.cloud));
+  std::erase_if(clouds, [&](const fs::path& file) { return is_same(file, options.poses); });
   return options.is_sequence() ? in_number_order(std::move(clouds), true) : std::move(clouds);
 }
 

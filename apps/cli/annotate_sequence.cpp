@@ -47,7 +47,7 @@ bool is_before(const std::string& a, const std::string& b) {
       while (i < a.size() && is_digit(a[i])) ++i;
       while (j < b.size() && is_digit(b[j])) ++j;
     } else {
-      if (a[i] != b[j]) return a[i] < b[j];
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
       ++i;
       ++j;
     }

@@ -197,6 +197,7 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
                                       AnnotateProgress& progress) {
   SACCADE_TRY(const std::optional<SavedSession> saved, saved_session(options, job, cloud));
   if (!saved && actions.empty() && job.seeds.empty()) {
+    if (!options.script.empty()) return Error{Errc::invalid_argument, "holds no action", options.script.string()};
     return Error{Errc::not_found, "there is no such session; --script, --seeds or --presets begin one",
                  job.session.string()};
   }

@@ -191,7 +191,7 @@ Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const Fil
       result.frames.push_back(std::move(*filtered));
     } else if (is_left_out(frames[i], filtered.error())) {
       if (filtered.error().code == Errc::unsupported) ++result.other_kinds;  // such as the colours beside the depth
-      result.left_out.push_back(filtered.error());
+      result.left_out.push_back({frames[i].file, filtered.error()});
     } else {
       return filtered.error();
     }
@@ -217,10 +217,10 @@ Status remove_earlier_frames(const RunFolder& out) {
 }
 
 /// Files that were left out, by their reason: each reason once, with the number of its files and the first of them.
-std::vector<std::string> reasons_of(const std::vector<Error>& left_out) {
+std::vector<std::string> reasons_of(const std::vector<LeftOutFile>& left_out) {
   std::vector<std::pair<std::string, std::size_t>> reasons;
   std::vector<std::string> firsts;
-  for (const Error& error : left_out) {
+  for (const auto& [file, error] : left_out) {
     if (error.code == Errc::unsupported) continue;
     const auto same = [&error](const auto& reason) { return reason.first == error.message; };
     const auto found = std::find_if(reasons.begin(), reasons.end(), same);
@@ -242,9 +242,9 @@ std::vector<std::string> reasons_of(const std::vector<Error>& left_out) {
 /// Why there is not a single frame. Depth images that do not fit the camera say more than pictures of another kind.
 Error nothing_filtered(const FilterResult& result) {
   if (interrupted()) return {Errc::cancelled, "interrupted", {}};
-  const auto is_depth = [](const Error& error) { return error.code != Errc::unsupported; };
+  const auto is_depth = [](const LeftOutFile& left_out) { return left_out.error.code != Errc::unsupported; };
   const auto depth = std::find_if(result.left_out.begin(), result.left_out.end(), is_depth);
-  const Error& first = depth == result.left_out.end() ? result.left_out.front() : *depth;
+  const Error& first = depth == result.left_out.end() ? result.left_out.front().error : depth->error;
   const std::vector<std::string> reasons = reasons_of(result.left_out);
   const std::string why = reasons.empty() ? first.to_string() : joined(reasons, "; ");
   return {first.code,

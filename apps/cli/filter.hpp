@@ -41,10 +41,15 @@ struct FilteredFrame {
   double ms{0.0};  ///< time of the filter alone
 };
 
+struct LeftOutFile {
+  std::filesystem::path file;
+  Error error;
+};
+
 struct FilterResult {
   std::vector<FilteredFrame> frames;
-  std::vector<Error> left_out;  ///< files of folders that cannot be used
-  std::size_t other_kinds{0};   ///< those of them that are images of another kind, such as colours beside the depth
+  std::vector<LeftOutFile> left_out;  ///< files of folders that cannot be used
+  std::size_t other_kinds{0};  ///< those of them that are images of another kind, such as colours beside the depth
   [[nodiscard]] std::size_t points() const;
 };
 

@@ -40,7 +40,12 @@ json filter_json(const FilterOptions& options, const std::string& out, const Fil
   json details = json::array();
   for (const FilteredFrame& frame : result.frames) details.push_back(frame_json(frame));
   json left_out = json::array();
-  for (const Error& error : result.left_out) left_out.push_back({{"frame", error.context}, {"reason", error.message}});
+  for (const auto& [file, error] : result.left_out) {
+    const std::string name = file.string();
+    const bool has_place = error.context.starts_with(name + ", ");
+    const std::string place = has_place ? error.context.substr(name.size() + 2) + ": " : "";
+    left_out.push_back({{"frame", name}, {"reason", place + error.message}});
+  }
   return {{"out", out},
           {"frames", result.frames.size()},
           {"points", result.points()},

@@ -22,14 +22,26 @@ namespace fs = std::filesystem;
 }  // namespace
 
 Result<Description> describe_frames(const fs::path& folder) {
-  SACCADE_TRY(const auto source, open_rgbd_folder(folder));
+  auto opened = open_rgbd_folder(folder);
+  std::string lacks;
+  if (!opened && opened.error().code == Errc::not_found) {  // frames all the same, if given intrinsics open them
+    RgbdFolderConfig any_camera;
+    any_camera.intrinsics.emplace();
+    any_camera.intrinsics->fx = any_camera.intrinsics->fy = 1.0;
+    if (auto without = open_rgbd_folder(folder, any_camera)) {
+      lacks = opened.error().message;
+      opened = std::move(without);
+    }
+  }
+  SACCADE_TRY(const auto source, std::move(opened));
   const RgbdFolderInfo& info = source->info();
   const PinholeCamera& camera = source->camera();
   const std::size_t frames = source->size().value_or(0);
   Description described;
   described.line("frames", std::to_string(frames) + ", layout " + std::string{to_string(info.layout)});
-  described.line("camera", std::to_string(camera.width) + " × " + std::to_string(camera.height) +
-                               " pixels, f = " + fixed(camera.fx, 1) + " px (" + info.intrinsics_from + ")");
+  const std::string rays = ", f = " + fixed(camera.fx, 1) + " px (" + info.intrinsics_from + ")";
+  described.line("camera", std::to_string(camera.width) + " × " + std::to_string(camera.height) + " pixels" +
+                               (lacks.empty() ? rays : "; " + lacks));
   std::size_t posed = 0;
   for (std::size_t i = 0; info.has_poses && i < frames; ++i) posed += source->pose_at(i) ? 1 : 0;
   const std::string some = posed == frames ? "yes" : "of " + std::to_string(posed) + " of the frames";
@@ -42,8 +54,8 @@ Result<Description> describe_frames(const fs::path& folder) {
                       {"frames",
                        {{"count", frames},
                         {"layout", to_string(info.layout)},
-                        {"camera", camera_to_json(camera)},
-                        {"intrinsics_from", info.intrinsics_from},
+                        {"camera", lacks.empty() ? camera_to_json(camera) : json{}},
+                        {"intrinsics_from", lacks.empty() ? json{info.intrinsics_from} : json{}},
                         {"poses", info.has_poses},
                         {"frames_with_pose", posed},
                         {"depth_units_per_m", info.encoding.units_per_m},

@@ -56,6 +56,7 @@ Result<std::map<std::string, fs::path>> clouds_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator{folder, code}) {
     const fs::path extension = entry.path().extension();
     if (extension != ".pcd" && extension != ".ply") continue;
+    if (entry.path().filename().string().front() == '.') continue;  // hidden: what other systems leave behind
     const auto [before, is_new] = clouds.emplace(entry.path().stem().string(), entry.path());
     if (!is_new) {
       return Error{Errc::invalid_argument, "there are two clouds of this name, PCD and PLY",

@@ -36,7 +36,8 @@ Status Annotation::validate(const AnnotationAction& action) const {
   const auto check_joined = [&](std::span<const std::uint32_t> points) -> Status {
     for (const std::uint32_t point : points) {
       if (graph.edges(graph.node_of(point)).empty()) {
-        return cannot("point " + std::to_string(point) + " has no neighbours; is its position finite?");
+        return cannot("point " + std::to_string(point) +
+                      " has no neighbours: its position is not finite, or no other point lies elsewhere");
       }
     }
     return {};

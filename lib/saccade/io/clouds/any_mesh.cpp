@@ -27,9 +27,11 @@ namespace {
 
 Eigen::Vector3f to_vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-/// Appends all parts under a node, transformed by the node's pose.
+/// Appends all parts under a node, transformed by the node's pose. A pose that mirrors turns outside in; the corners'
+/// order turns it out again.
 void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_scene_parent, TriangleMesh& mesh) {
   const aiMatrix4x4 T_scene_node = T_scene_parent * node.mTransformation;
+  const bool is_mirrored = aiMatrix3x3{T_scene_node}.Determinant() < 0.0F;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     const aiMesh& part = *scene.mMeshes[node.mMeshes[i]];
     const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -39,6 +41,7 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_scene
       const aiFace& face = part.mFaces[f];
       if (face.mNumIndices != 3) continue;  // points and lines
       mesh.triangles.push_back({face.mIndices[0] + offset, face.mIndices[1] + offset, face.mIndices[2] + offset});
+      if (is_mirrored) std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
     }
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i) append(scene, *node.mChildren[i], T_scene_node, mesh);

@@ -42,10 +42,16 @@ Result<Column> label_field(const ColumnTable& fields, bool is_las = false) {
   return *column;
 }
 
+/// Tells a cloud from labels alone. The first line may be the number of points, as in a .pts.
 bool has_several_fields(std::string_view text) {
   LineScanner lines{without_byte_order_mark(text)};
+  constexpr std::size_t kPlaceAndLabel{4};
+  std::size_t least = 2;
   while (const auto line = lines.next()) {
-    if (!is_comment(*line)) return fields_of(*line, separator_of(*line)).size() > 1;
+    if (is_comment(*line)) continue;
+    if (fields_of(*line, separator_of(*line)).size() >= least) return true;
+    if (least == kPlaceAndLabel) return false;
+    least = kPlaceAndLabel;
   }
   return false;
 }

@@ -37,8 +37,8 @@ struct NamedLabel {
 /// - .xyz, .txt, .csv: text with label as the last column; lines of a cloud that was read from text stay unchanged.
 /// - .las: the bytes of the LAS that was read, with these numbers as classes.
 /// - .label: SemanticKITTI's: the class in the lower 16 bits, the instance in the upper 16. The class of a label is its
-/// class_name where that is a number, otherwise the smallest number among the labels of its class; for a label without
-/// a class it is its number.
+/// class_name where that is a number, otherwise the smallest number among the labels of its class. A label without
+/// class and instance is written as the 32 bits of its number, as it was read.
 /// - .npy: a NumPy array of uint32.
 /// @return size_mismatch unless there is one label per point; invalid_argument for another suffix, and for a class or
 /// an instance of more than 16 bits in a .label; unsupported for fields that the format cannot hold; io_failure.

@@ -30,6 +30,7 @@ class KittiLabels {
     }
     KittiLabels kitti;
     for (const NamedLabel& label : names) {
+      if (label.class_name.empty() && label.instance == 0) continue;  // its bits are its number
       const auto numbered = parse_integer<std::uint32_t>(label.class_name);
       const std::uint32_t of_class = label.class_name.empty() ? label.number : first_of_class[label.class_name];
       SACCADE_CHECK(kitti.add(label.number, numbered.value_or(of_class), label.instance));
@@ -37,10 +38,11 @@ class KittiLabels {
     return kitti;
   }
 
-  [[nodiscard]] Result<std::uint32_t> bits(std::uint32_t number) {
-    if (number == 0) return 0U;
-    if (bits_.find(number) == bits_.end()) SACCADE_CHECK(add(number, number, 0));
-    return bits_[number];
+  /// Returns the number itself for a label without class and instance: what was read from a .label is written as it
+  /// was.
+  [[nodiscard]] std::uint32_t bits(std::uint32_t number) const {
+    const auto found = bits_.find(number);
+    return found == bits_.end() ? number : found->second;
   }
 
  private:
@@ -60,14 +62,10 @@ class KittiLabels {
 
 Result<std::vector<std::uint32_t>> kitti_labels(std::span<const std::uint32_t> labels,
                                                 std::span<const NamedLabel> names) {
-  SACCADE_TRY(KittiLabels kitti, KittiLabels::create(names));
+  SACCADE_TRY(const KittiLabels kitti, KittiLabels::create(names));
   std::vector<std::uint32_t> bits(labels.size());
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (i > 0 && labels[i] == labels[i - 1]) {
-      bits[i] = bits[i - 1];
-    } else {
-      SACCADE_TRY(bits[i], kitti.bits(labels[i]));
-    }
+    bits[i] = i > 0 && labels[i] == labels[i - 1] ? bits[i - 1] : kitti.bits(labels[i]);
   }
   return bits;
 }

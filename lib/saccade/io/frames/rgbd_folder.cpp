@@ -247,7 +247,7 @@ Result<std::optional<MaskImage>> find_mask(const RgbdFolderConfig& config, const
   std::vector<PixelPolygon> polygons = config.mask_polygons;
   if (config.mask_file && config.mask_file->extension() == ".json") {
     SACCADE_TRY(const std::string text, read_text_file(*config.mask_file));
-    SACCADE_TRY(auto read, parse_polygons(text));
+    SACCADE_TRY(auto read, in_file(parse_polygons(text), *config.mask_file));
     polygons.insert(polygons.end(), read.begin(), read.end());
   } else if (config.mask_file) {
     SACCADE_TRY(MaskImage mask, read_mask(*config.mask_file));

@@ -28,6 +28,22 @@ std::string collada(const std::string& asset) {
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
+TEST(AnyMesh, ANodeThatMirrorsKeepsTheOutside) {
+  const test::TempFolder folder;
+  const std::string whole = collada("");
+  const std::string node{"<instance_geometry"};
+  std::string mirrored = whole;
+  mirrored.insert(mirrored.find(node), "<scale>-1 1 1</scale>");
+  const auto normal_y = [](const TriangleMesh& mesh) {
+    const auto& [a, b, c] = mesh.triangles.front();
+    return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).y();
+  };
+  const float before = normal_y(*read_any_mesh(folder.write("a.dae", whole)));
+  const float after = normal_y(*read_any_mesh(folder.write("b.dae", mirrored)));
+  EXPECT_NE(before, 0.0F);
+  EXPECT_EQ(after, before);  // mirrored along x, the outward normal keeps its y
+}
+
 TEST(AnyMesh, ColladaKeepsItsAxesAndTakesItsUnit) {
   const test::TempFolder folder;
   struct Case {

@@ -146,13 +146,21 @@ TEST(Labels, OfSemanticKittiAreClassAndInstance) {
   const std::vector<std::uint32_t> labels{7, 3, 70000, 5};
   ASSERT_TRUE(write_labels(folder / "a.label", cloud, labels, names));
   EXPECT_EQ(read_labels(folder / "a.label", 4).value(), (std::vector<std::uint32_t>{3 + 2 * 65536, 3 + 65536, 40, 5}));
-  const Status large = write_labels(folder / "b.label", cloud, kNumbers);
-  ASSERT_FALSE(large);
-  EXPECT_EQ(large.error().code, Errc::invalid_argument);
-  EXPECT_NE(large.error().to_string().find("label 4294967295"), std::string::npos) << large.error().to_string();
   const std::vector<NamedLabel> many{{7, "", "", 65536, {}, 0}};
+  const Status large = write_labels(folder / "b.label", cloud, kSmallNumbers, many);
+  ASSERT_FALSE(large);
+  EXPECT_NE(large.error().to_string().find("label 7"), std::string::npos) << large.error().to_string();
   EXPECT_EQ(write_labels(folder / "b.label", cloud, kSmallNumbers, many).error().code, Errc::invalid_argument);
   EXPECT_FALSE(fs::exists(folder / "b.label"));
+  // Numbers that were read without names come back, with their instances.
+  ASSERT_TRUE(write_labels(folder / "c.label", cloud, kNumbers));
+  EXPECT_EQ(read_labels(folder / "c.label", 4).value(), (std::vector<std::uint32_t>{kNumbers.begin(), kNumbers.end()}));
+}
+
+TEST(Labels, OfAPtsWithItsCountComeBack) {
+  const test::TempFolder folder;
+  const fs::path file = folder.write("a.txt", "# x y z i label\n2\n0 0 0 5 7\n1 0 0 5 0\n");
+  EXPECT_EQ(read_labels(file, 2).value(), (std::vector<std::uint32_t>{7, 0}));
 }
 
 TEST(Labels, ThatCannotBeWrittenAreErrors) {

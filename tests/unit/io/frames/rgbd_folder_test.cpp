@@ -104,6 +104,9 @@ TEST(RgbdFolder, ReadsSevenScenes) {
   ASSERT_TRUE((*frame)->T_world_camera);
   EXPECT_TRUE((*frame)->T_world_camera->isApprox(Pose::Identity()));
   EXPECT_EQ(outcomes(**source), (std::vector<std::string>{"2.0", "3.0"}));
+  folder.write("._frame-000000.depth.png", "hidden");
+  fs::copy_file(folder / "frame-000002.depth.png", folder / "frame-000002 (1).depth.png");
+  EXPECT_NE(outcomes(folder.path()).at(3).find("no pose"), std::string::npos);  // a copy is no frame of its number
 }
 
 TEST(RgbdFolder, SelectsFrames) {

@@ -77,7 +77,9 @@ void search(const fs::path& folder, std::string_view pattern, FileKind kind, std
   for (fs::directory_iterator it{folder, code}; !code && it != fs::directory_iterator{}; it.increment(code)) {
     std::string key;
     std::error_code ignored;
-    if (!matches(name, it->path().filename().string(), key)) continue;
+    const std::string candidate = it->path().filename().string();
+    const bool is_hidden = candidate.front() == '.';  // what other systems leave behind
+    if (is_hidden || !matches(name, candidate, key)) continue;
     if (!is_last) {
       if (it->is_directory(ignored)) folders.push_back(it->path());
     } else if (it->is_regular_file(ignored) && rank_of(it->path(), kind)) {
@@ -106,7 +108,7 @@ bool comes_before(std::string_view a, std::string_view b) {
       const int order = compare_runs(a, b);
       if (order != 0) return order < 0;
     } else if (a.front() != b.front()) {
-      return a.front() < b.front();
+      return static_cast<unsigned char>(a.front()) < static_cast<unsigned char>(b.front());
     } else {
       a.remove_prefix(1);
       b.remove_prefix(1);
@@ -122,7 +124,13 @@ std::optional<std::int64_t> number_in(std::string_view key) {
     const auto number = parse_integer<std::int64_t>(key.substr(0, dash));
     if (number && parse_integer<std::int64_t>(key.substr(dash + 1))) return number;
   }
-  const std::size_t last = key.find_last_of("0123456789");
+  constexpr std::string_view kDigits{"0123456789"};
+  const std::size_t blank = key.find(' ');
+  if (blank != std::string_view::npos && key.substr(0, blank).find_first_of(kDigits) != std::string_view::npos &&
+      key.substr(blank).find_first_of(kDigits) != std::string_view::npos) {
+    return std::nullopt;  // such as a copy, "000006 (1)"
+  }
+  const std::size_t last = key.find_last_of(kDigits);
   if (last == std::string_view::npos) return std::nullopt;
   const std::size_t before = key.find_last_not_of("0123456789", last);
   const std::size_t begin = before == std::string_view::npos ? 0 : before + 1;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
 #include "saccade/io/frames/internal/layout_files.hpp"
 #include "saccade/io/frames/internal/nearest_in_time.hpp"
@@ -120,6 +123,33 @@ std::optional<PoseIndices> match(const RgbdListing& listing, const std::vector<P
   return by_count(frames, poses);
 }
 
+/// Says why no image has a pose: with times, that those of poses and images lie apart.
+Error none_matches(const RgbdListing& listing, const std::vector<PoseEntry>& poses, const fs::path& path) {
+  std::string what = "none of its " + counted(poses.size(), "pose", "poses") + " belongs to one of the " +
+                     counted(listing.frames.size(), "depth image", "depth images");
+  const auto span = [](const auto& entries) {
+    std::optional<std::pair<double, double>> times;
+    for (const auto& entry : entries) {
+      if (!entry.time_s) continue;
+      if (!times) times.emplace(*entry.time_s, *entry.time_s);
+      times->first = std::min(times->first, *entry.time_s);
+      times->second = std::max(times->second, *entry.time_s);
+    }
+    return times;
+  };
+  const auto of_poses = span(poses);
+  const auto of_frames = span(listing.frames);
+  const auto seconds = [](const std::pair<double, double>& times) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.3f to %.3f s", times.first, times.second);
+    return std::string{text.data()};
+  };
+  if (of_poses && of_frames) {
+    what += ": the poses are of " + seconds(*of_poses) + ", the images of " + seconds(*of_frames);
+  }
+  return Error{Errc::size_mismatch, std::move(what), path.string()};
+}
+
 void note_leftovers(RgbdListing& listing, const PoseIndices& indices, std::size_t poses, const fs::path& path) {
   std::vector<bool> used(poses);
   std::size_t without = 0;
@@ -163,11 +193,12 @@ Status attach_pose_file(RgbdListing& listing, const fs::path& path, const RgbdFo
             ", and neither times nor numbers say which belongs to which; pass --poses FILE with a pose per image",
         path.string()};
   }
+  if (!has_any(*indices)) return none_matches(listing, poses, path);
   for (std::size_t i = 0; i < listing.frames.size(); ++i) {
     RgbdFrameFiles& frame = listing.frames[i];
     frame.pose_file.reset();
     frame.T_world_camera.reset();
-    if ((*indices)[i]) frame.T_world_camera = poses[*(*indices)[i]].T_world_camera;
+    if ((*indices)[i]) frame.T_world_camera = in_file(poses[*(*indices)[i]].T_world_camera, path);
     const bool has_pose = frame.T_world_camera && *frame.T_world_camera;
     if (are_robots && has_pose && frame.T_base_camera) {
       frame.T_world_camera = **frame.T_world_camera * *frame.T_base_camera;
