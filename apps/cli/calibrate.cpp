@@ -156,7 +156,7 @@ json calibration_json(const HandEyeInput& input, const HandEyeResult& found) {
           {"rotation_sigma_rad", found.rotation_sigma_rad},
           {"translation_sigma_m", found.translation_sigma_m},
           {"clock_offset_s", found.clock_offset_s ? json(*found.clock_offset_s) : json(nullptr)},
-          {"clock_sigma_s", found.clock_sigma_s},
+          {"clock_sigma_s", found.agreement_after ? json(found.clock_sigma_s) : json(nullptr)},
           {"why_no_clock", found.why_no_clock},
           {"flange_rotation_sigma_rad", found.flange_rotation_sigma_rad},
           {"flange_translation_sigma_m", found.flange_translation_sigma_m},
@@ -192,9 +192,10 @@ std::string calibration_text(const HandEyeInput& input, const HandEyeResult& fou
     line("sure to", fixed(1e3 * found.translation_sigma_m, 2) + " mm, " + fixed(to_deg(found.rotation_sigma_rad), 3) +
                         "° (one standard deviation)");
   }
+  const std::string how_sure = found.agreement_after ? ", ± " + fixed(1e3 * found.clock_sigma_s, 1) + " ms"
+                                                     : ", as motions alone match: not refined with the mount";
   line("clock", found.clock_offset_s
-                    ? fixed(1e3 * *found.clock_offset_s, 1) + " ms to be added to the camera's times, ± " +
-                          fixed(1e3 * found.clock_sigma_s, 1) + " ms"
+                    ? fixed(1e3 * *found.clock_offset_s, 1) + " ms to be added to the camera's times" + how_sure
                     : "not found: " + found.why_no_clock);
   if (found.agreement_before && found.agreement_after) {
     line("views lie", fixed(1e3 * found.agreement_before->median_depth_m, 2) + " mm apart before, " +

@@ -34,7 +34,9 @@ struct TypeText {
 
 TypeText type_text(const CLI::Option& option) {
   const std::string text = option.get_type_name();
-  const std::size_t colon = text.find(':');
+  const std::size_t bracket = text.find('[');  // a colon in brackets belongs to the placeholder: DIR[:DIR]
+  std::size_t colon = text.find(':');
+  if (bracket < colon) colon = text.find(':', std::min(text.find(']', bracket), text.size()));
   if (colon == std::string::npos) return {text, ""};
   return {text.substr(0, colon), text.substr(colon + 1)};
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "json_output.hpp"
 #include "saccade/io/files/file_io.hpp"
@@ -143,12 +144,15 @@ Plot unknown_plot(const ComparedRuns& compared, const std::optional<std::string>
   return plot;
 }
 
-std::string picture_name(const std::string& what, const std::string& scene) {
+/// Returns the scene's name as that of a file, with a number where another scene has it: "a b" and "a-b" differ.
+std::string file_name_of(const std::string& scene, std::set<std::string>& taken) {
   constexpr std::string_view kPlain{"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-"};
   std::string name = scene;
   std::replace_if(
       name.begin(), name.end(), [&](char c) { return kPlain.find(c) == std::string_view::npos; }, '-');
-  return what + '-' + name + ".svg";
+  std::string free = name;
+  for (int i = 2; !taken.insert(free).second; ++i) free = name + '-' + std::to_string(i);
+  return free + ".svg";
 }
 
 Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared) {
@@ -156,13 +160,13 @@ Status write_comparison(const std::filesystem::path& folder, const ComparedRuns&
   SACCADE_CHECK(views_csv(compared.runs).write(folder / "views.csv"));
   SACCADE_CHECK(summary_csv(compared.summaries).write(folder / "summary.csv"));
   std::string drawn;
+  std::set<std::string> taken;
   for (const CampaignSummary& summary : compared.summaries) {  // those of one scene follow each other
     if (!summary.group.scene || *summary.group.scene == drawn) continue;
     drawn = *summary.group.scene;
-    SACCADE_CHECK(
-        write_file_atomically(folder / picture_name("coverage", drawn), plot_svg(coverage_plot(compared, drawn))));
-    SACCADE_CHECK(
-        write_file_atomically(folder / picture_name("unknown", drawn), plot_svg(unknown_plot(compared, drawn))));
+    const std::string name = file_name_of(drawn, taken);
+    SACCADE_CHECK(write_file_atomically(folder / ("coverage-" + name), plot_svg(coverage_plot(compared, drawn))));
+    SACCADE_CHECK(write_file_atomically(folder / ("unknown-" + name), plot_svg(unknown_plot(compared, drawn))));
   }
   return {};
 }

@@ -45,7 +45,7 @@ Result<Outcome> list_runs(const Comparison& comparison) {
   for (const PlannedRun& run : runs) {
     rows.push_back(planned_json(comparison, run));
     text << std::setw(scene_width) << comparison.scenes()[run.scene].name << std::setw(strategy_width)
-         << run.strategy.name << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed
+         << run.strategy.name << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed << ' '
          << (run.max_views ? std::to_string(*run.max_views) + " views at most" : "as many views as sphere takes")
          << (run.found ? ", done" : "") << '\n';
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exit_status.hpp"
 
+#include <algorithm>
 #include <iostream>
-#include <string>
 
 namespace saccade::cli {
 
@@ -20,12 +20,18 @@ ExitStatus exit_status_of(Errc code) {
   return ExitStatus::bug;
 }
 
+std::string without_controls(std::string_view text) {
+  std::string line{text};
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
+  return line;
+}
+
 void print_error(std::string_view command, std::string_view text) {
   std::string line{"saccade"};
   if (!command.empty()) line.append(" ").append(command);
   line += ": ";
-  for (const char c : text) line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  std::cerr << line + '\n' << std::flush;
+  std::cerr << line + without_controls(text) + '\n' << std::flush;
 }
 
 }  // namespace saccade::cli

@@ -2,6 +2,7 @@
 #pragma once
 // ExitStatus, exit_status_of(Errc) and print_error: how the program ends, and its one line on standard error.
 
+#include <string>
 #include <string_view>
 
 #include "saccade/core/result.hpp"
@@ -21,6 +22,9 @@ enum class ExitStatus : int {
 /// Maps an error of the library to an exit status. Wrong options are found before any work and are `usage`; an invalid
 /// argument that the library reports later came from a file.
 [[nodiscard]] ExitStatus exit_status_of(Errc code);
+
+/// Returns the text with blanks for control characters, which names and files may hold.
+[[nodiscard]] std::string without_controls(std::string_view text);
 
 /// "saccade COMMAND: where: what" as one line on standard error.
 void print_error(std::string_view command, std::string_view text);

@@ -62,7 +62,7 @@ std::string phases_text(const json& phases) {
   for (const Phase phase : kPhaseNames.values) {
     if (phase != Phase::motion) add(to_string(phase), text_of(phase));
   }
-  add("robot", "robot's motion (simulated)");
+  add("robot", "robot's motion (planned)");
   return text.empty() ? "-" : text;
 }
 
@@ -182,7 +182,10 @@ Status write_map(const RunFolder& out, const ExploreOptions& options, const Expl
 }
 
 /// Why there is no result; empty where there is one.
-std::string without_result(const RunRecord& run) {
+std::string without_result(const RunRecord& run, const TsdfSnapshot& map) {
+  if (run.scan.views > 0 && map.grid.empty()) {
+    return "not one frame showed any depth within the camera's range; are its depths and its range in metres?";
+  }
   if (!run.views.empty() || run.stopped_because == StopReason::cancelled) return {};
   if (run.scan.attempted > 0 && run.scan.views == 0) {
     return "not one pose of the scan could be taken (" + in_words(run.scan.refused) +
@@ -221,6 +224,10 @@ class Explore final : public Command {
     if (explore_.cell_problem) return *explore_.cell_problem;
     const std::string mixed = explore_.camera_command.empty() ? mixed_camera(explore_) : "";
     if (!mixed.empty()) context.bar().note(mixed);
+    if (explore_.dry_run && explore_.run.strategy.name != explore_.strategy) {
+      context.bar().note("the rehearsal chooses by " + explore_.run.strategy.name + " instead of " + explore_.strategy +
+                         ": no surface is expected where nothing was seen yet");
+    }
     SACCADE_CHECK(check_journal(explore_));
     SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(explore_, &context.bar()));  // before anything is written
     SACCADE_CHECK(context.open_folder(explore_.resume ? "journal.json" : "run.json"));
@@ -275,7 +282,8 @@ class Explore final : public Command {
     }
     SACCADE_CHECK(remove_journal(out.path()));
     if (show_) outcome.afterwards = [this] { show_->finish(); };
-    return std::move(outcome).empty_if(!without_result(run).empty(), without_result(run));
+    const std::string why = without_result(run, run_->map());
+    return std::move(outcome).empty_if(!why.empty(), why);
   }
 
   const Planners* planners_;

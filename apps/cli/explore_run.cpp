@@ -27,6 +27,10 @@ using nlohmann::json;
 
 constexpr const char* kProgram{"a program"};  ///< its command may be mended before a run goes on
 
+json box_to_json(const Box& box) {
+  return {{box.min.x(), box.min.y(), box.min.z()}, {box.max.x(), box.max.y(), box.max.z()}};
+}
+
 /// All that decides how a run goes on.
 json settings_of(const ExploreOptions& options, const ExploreSetup& subject, const PinholeCamera& camera) {
   const SimulatedRunConfig& run = options.run;
@@ -51,6 +55,11 @@ json settings_of(const ExploreOptions& options, const ExploreSetup& subject, con
                 {"gain_width_px", run.gain_width_px},
                 {"min_gain", run.planner.min_gain},
                 {"good_enough", run.exploration.good_enough}};
+  if (!subject.rays) {  // with objects, scene_hash tells these
+    settings["workspace"] = box_to_json(subject.scene.workspace);
+    for (const Region& region : subject.scene.regions) settings["regions"].push_back(box_to_json(bounds(region)));
+    for (const Pose& pose : subject.scene.scan) settings["scan"].push_back(pose_to_json(pose));
+  }
   if (run.clearing_percent != 100) settings["clearing_percent"] = run.clearing_percent;
   if (json reading = server::arm_reading_to_json(options.arm_reading.urdf); !reading.empty())
     settings["arm_reading"] = std::move(reading);
@@ -115,7 +124,10 @@ Result<std::unique_ptr<ExploreRun>> ExploreRun::create(const ExploreOptions& opt
 }
 
 Status ExploreRun::resume(SavedExploration saved) {
-  for (const auto& [key, value] : journal_.settings.items()) {
+  std::vector<std::string> keys{"strategy"};  // first: others follow from it
+  for (const auto& [key, value] : journal_.settings.items()) keys.push_back(key);
+  for (const std::string& key : keys) {
+    const json& value = journal_.settings[key];
     // Journals did not name the sensor or the joints while there was but one kind.
     const json missing = key == "sensor"   ? json(to_string(DepthSensor::kinect_v1))
                          : key == "joints" ? json("simulated")

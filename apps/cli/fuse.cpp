@@ -70,6 +70,10 @@ Result<Reconstruction> make_reconstruction(FuseRun& run) {
   SACCADE_TRY(TsdfSnapshot map, load_map(run.options.continue_map, run.context.executor()));
   if (run.options.map.workspace) map.config.workspace = run.options.map.workspace;
   run.T_world_last = last_pose_beside(run.options.continue_map);
+  if (!run.T_world_last && !needs_pose(run.tracking)) {
+    run.context.bar().warn("warning: there is no trajectory.txt that can be read beside " +
+                           run.options.continue_map.string() + ": a first frame without a pose starts at the origin");
+  }
   return Reconstruction::resume(std::move(map), IcpConfig{});
 }
 

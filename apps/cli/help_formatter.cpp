@@ -21,9 +21,7 @@ std::string range_text(const std::string& checks) {
 }
 
 std::string HelpFormatter::make_option_name(const CLI::Option* option, bool is_positional) const {
-  if (is_positional || option->get_items_expected_max() == 0) {
-    return CLI::Formatter::make_option_name(option, is_positional);
-  }
+  if (is_positional) return CLI::Formatter::make_option_name(option, is_positional);
   std::string text;
   for (const std::string& name : option->get_snames()) text += (text.empty() ? "-" : ",-") + name;
   for (const std::string& name : shown_names(*option)) text += (text.empty() ? "--" : ",--") + name;

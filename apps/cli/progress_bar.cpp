@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "exit_status.hpp"
 #include "interrupt.hpp"
 
 namespace saccade::cli {
@@ -67,7 +68,7 @@ void ProgressBar::warn(std::string_view line) { print_line(line); }
 void ProgressBar::print_line(std::string_view line) {
   const std::lock_guard lock{mutex_};
   wipe();
-  std::cerr << std::string{line} + '\n' << std::flush;
+  std::cerr << without_controls(line) + '\n' << std::flush;
 }
 
 std::optional<std::string> ProgressBar::ask(std::string_view question) {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "add_value.hpp"
 #include "length_options.hpp"
@@ -82,6 +83,9 @@ void check_foresight(const RunOptions& options, const std::string& robot) {
 }
 
 void check_run_options(RunOptions& options) {
+  if (options.min_gain && !(*options.min_gain >= 0.0 && std::isfinite(*options.min_gain))) {
+    usage_error("--min-gain", "must be a number of at least 0");
+  }
   require_positive(options.run.voxel_size_m, "--voxel-size");
   require_positive(options.run.truncation_vox, "--truncation");
   require_ok(options.run.map().validate(), "--voxel-size, --truncation, --clearing");

@@ -8,6 +8,7 @@
 
 #include "context.hpp"
 #include "length_options.hpp"
+#include "run_options.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -190,11 +191,13 @@ class SceneExport final : public Command {
                     .marker = kExportFiles.front(),
                     .required = true});
     options.flag("--no-pictures{false}", pictures_, "draw no picture");
+    add_mesh_options(options.group(), mesh_);
     options.value("--spacing", spacing_m_, "METRES",
                   "distance between points of the surface, metres; the default is explore's");
   }
 
   void check(const GlobalOptions& /*global*/) override {
+    require_ok(mesh_.validate(), "--mesh-scale");
     require_length(spacing_m_, "--spacing");
     if (spacing_m_ < 1e-4) usage_error("--spacing", "must be 0.0001 at least");
   }
@@ -202,7 +205,7 @@ class SceneExport final : public Command {
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     const Executor& executor = context.executor();
     const RunFolder& out = *context.folder();
-    SACCADE_TRY(Scene scene, find_scene(scene_));
+    SACCADE_TRY(Scene scene, find_scene(scene_, mesh_));
     SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
     context.bar().update("sampling the surface", 0, 2);
     const SurfaceSamples samples = sample_surfaces(rays.meshes(), spacing_m_, rays.scene().workspace);
@@ -222,6 +225,7 @@ class SceneExport final : public Command {
 
  private:
   std::string scene_;
+  MeshSceneConfig mesh_;
   double spacing_m_{kTruthSpacing_m};
   bool pictures_{true};
 };

@@ -19,16 +19,15 @@ struct Unit {
 };
 constexpr double kKibi{1024.0};
 constexpr double kKilo{1000.0};
-constexpr std::array<Unit, 10> kUnits{{{"", 1.0},
-                                       {"b", 1.0},
-                                       {"kib", kKibi},
-                                       {"mib", kKibi* kKibi},
-                                       {"gib", kKibi* kKibi* kKibi},
-                                       {"tib", kKibi* kKibi* kKibi* kKibi},
-                                       {"kb", kKilo},
-                                       {"mb", kKilo* kKilo},
-                                       {"gb", kKilo* kKilo* kKilo},
-                                       {"tb", kKilo* kKilo* kKilo* kKilo}}};
+constexpr std::array<Unit, 9> kUnits{{{"b", 1.0},
+                                      {"kib", kKibi},
+                                      {"mib", kKibi* kKibi},
+                                      {"gib", kKibi* kKibi* kKibi},
+                                      {"tib", kKibi* kKibi* kKibi* kKibi},
+                                      {"kb", kKilo},
+                                      {"mb", kKilo* kKilo},
+                                      {"gb", kKilo* kKilo* kKilo},
+                                      {"tb", kKilo* kKilo* kKilo* kKilo}}};
 
 }  // namespace
 

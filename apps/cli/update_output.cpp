@@ -215,7 +215,7 @@ std::string update_text(const UpdateOptions& options, const WatchedTask& task, c
   const auto s = [&](const char* phase) { return fixed(phases.value(phase, 0.0), 2) + " s"; };
   summary.line("time", "forgetting " + s("forgetting") + ", evaluation " + s("evaluation") + ", planner's map " +
                            s("planner_map") + ", motion planning " + s("planning") + ", fusion " + s("fusion") +
-                           ", robot's motion (simulated) " + s("robot"));
+                           ", robot's motion (planned) " + s("robot"));
   if (options.has_arm()) summary.line("arm", arm_text(result));
   summary.line("stopped", result["stopped_because"].get<std::string>());
   summary.line("results", (options.write_pictures ? options.out / "report.html" : options.out).string());

@@ -147,6 +147,10 @@ TEST_F(SimulatedCell, WhatWasSeenBeforeAnEarlyFailureIsKept) {
                           "--voxel-size",  "0.02",          "--max-views", "0",
                           "--no-pictures", "--quiet",       "--json",      "-"};
   expect_failure(run_program(explore), 4, "explore", {"the cable is loose", "is kept, add --resume"});
+  std::string moved = works;
+  moved.insert(moved.find("max: [") + 6, "1");
+  std::ofstream{cell()} << moved;
+  expect_failure(run_program(explore + Arguments{"--resume"}), 3, "explore", {"the interrupted run had", "start anew"});
   std::ofstream{cell()} << works;
   const Outcome outcome = run_program(explore + Arguments{"--resume"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

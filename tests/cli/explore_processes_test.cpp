@@ -90,6 +90,12 @@ TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
   kept();
   expect_failure(camera("say({'error': 'too warm'})"), 4, "explore", {"camera", "too warm"});
   kept();
+  std::string moved = text_of(cell());
+  moved.insert(moved.find("max: [") + 6, "1");
+  std::ofstream{cell()} << moved;
+  const std::string same = "python3 '" + (folder_ / "camera.py").string() + "'";
+  expect_failure(explore({"--camera-command", same, "--resume"}), 3, "explore", {"had workspace", "start anew"});
+  std::ofstream{cell()} << kCell;
   expect_failure(explore({"--camera-command", "/nowhere/camera", "--force"}), 3, "explore", {"/nowhere/camera"});
 }
 

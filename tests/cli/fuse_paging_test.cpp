@@ -43,7 +43,7 @@ TEST_F(FusePaging, GivesTheFilesOfAMapInMemory) {
   equal("drawn", drawn, "drawn-paged", forced + Arguments{"--map-memory", "1.5 MiB", "--threads", "2"});
 
   const std::vector<Arguments> policies{
-      {"--map-memory", "1"}, {"--moving-volume", "0.3"}, {"--moving-volume", "1", "--map-memory", "500kB"}};
+      {"--map-memory", "1B"}, {"--moving-volume", "0.3"}, {"--moving-volume", "1", "--map-memory", "500kB"}};
   const Arguments tracked{"--tracking", "icp", "--no-pictures"};
   const nlohmann::json plain = fused("whole", tracked);
   for (std::size_t i = 0; i < policies.size(); ++i)
@@ -59,7 +59,7 @@ TEST_F(FusePaging, SaysSoInTheSummary) {
 }
 
 TEST_F(FusePaging, RefusesWhatIsNoSizeAndNoFolder) {
-  for (const char* size : {"", "much", "-1GiB", "0", "1GiBs", "1 GiB 2", "nan"}) {
+  for (const char* size : {"", "much", "-1GiB", "0", "512", "1GiBs", "1 GiB 2", "nan"}) {
     const Outcome outcome = run_program(fuse(frames(), run(), {"--map-memory", size}));
     EXPECT_EQ(outcome.status, 2) << size;
     EXPECT_NE(outcome.err.find("--map-memory"), std::string::npos) << outcome.err;
@@ -76,7 +76,7 @@ TEST_F(FusePaging, AFullDiskEndsTheRunAndKeepsTheMapBefore) {
   // No file may grow beyond this: enough for the map of the first frames, not for what is paged out later.
   constexpr rlim_t kFileBytes{1050 << 10};
   const Arguments arguments =
-      fuse(frames(), run(), {"--map-memory", "1", "--threads", "1", "--no-mesh", "--no-pictures"});
+      fuse(frames(), run(), {"--map-memory", "1B", "--threads", "1", "--no-mesh", "--no-pictures"});
   const Outcome outcome = RunningProgram{arguments, kFileBytes}.finish();
   expect_failure(outcome, 3, "fuse", {run().string(), "make room", "frames before is", "map.sacmap", "--continue"});
   EXPECT_FALSE(fs::exists(run() / "run.json"));

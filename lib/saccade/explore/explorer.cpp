@@ -145,6 +145,7 @@ Result<Explorer::Outcome> Explorer::go_to_best(Ranking& ranking, ViewRecord& vie
       ranking.drop_first(best.size());
       continue;
     }
+    SACCADE_EXPECTS(planned.motion->goal < best.size());
     const RankedView chosen = best[planned.motion->goal];
     const Approval approval = parts_.approve ? parts_.approve(chosen) : Approval::go;
     if (approval == Approval::stop) return Outcome::cancelled;

@@ -16,7 +16,7 @@ std::shared_ptr<T> borrowed(T& part) {
 
 Status ViewPlannerConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "view planner"}; };
-  if (std::isnan(min_gain)) return fail("the least gain is not a number");
+  if (!(min_gain >= 0.0 && std::isfinite(min_gain))) return fail("the least gain must be a number of at least 0");
   if (!(rival_share > 0.0 && rival_share <= 1.0)) return fail("the share that makes a rival lies above 0, at most 1");
   if (tries == 0) return fail("one view at least must be tried at a time");
   return {};

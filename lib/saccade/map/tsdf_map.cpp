@@ -248,9 +248,10 @@ Status TsdfMap::check_region(const Region& region) const {
   if (box.min.cwiseAbs().maxCoeff() > 1000.0 || box.max.cwiseAbs().maxCoeff() > 1000.0) {
     return Error{Errc::invalid_argument, "the region must lie within 1000 m of the origin", {}};
   }
-  const Eigen::Vector3d sectors = (box.max - box.min) / (kSectorVoxelEdge * config().voxel_size_m);
+  const IndexBox sectors = parents(parents(voxels_with_center_in(box, config().voxel_size_m)));
   constexpr double kMaxSectors{1e6};
-  if (sectors.prod() > kMaxSectors) {
+  const Index3 size = sectors.size();
+  if (!sectors.empty() && static_cast<double>(size.x) * size.y * size.z > kMaxSectors) {
     return Error{Errc::invalid_argument, "the region is too large for this voxel size", {}};
   }
   return {};

@@ -215,7 +215,13 @@ Scene read_document(const YAML::Node& document, const fs::path& folder) {
   YamlMap map{document, "a scene", std::move(known)};
   Scene scene;
   const YAML::Node cell = map.find("cell");
-  scene.name = yaml_text(cell.IsDefined() ? cell : map.need("scene"));
+  const YAML::Node name = cell.IsDefined() ? cell : map.need("scene");
+  scene.name = yaml_text(name);
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (scene.name.empty()) yaml_problem(name, "the name is empty");
+  if (std::any_of(scene.name.begin(), scene.name.end(), is_control)) {
+    yaml_problem(name, "the name holds a control character");
+  }
   for (const std::string_view key : kCellKeys) static_cast<void>(map.find(std::string{key}));  // read_cell reads these
   scene.workspace = read_box(map.need("workspace"), "the workspace");
   scene.max_deviation_m = map.number("max_deviation", scene.max_deviation_m);

@@ -48,7 +48,7 @@ class Camera {
 };
 
 /// Returns the depth of a robot's own body along z in metres, as the camera that it holds sees it from a pose; 0 where
-/// there is none. nullopt: no part of the body is in the image.
+/// there is none. The image has the camera's size. nullopt: no part of the body is in the image.
 using OwnBody = std::function<std::optional<DepthImage>(const Pose& T_world_camera)>;
 
 /// Calls a function for each frame; without one it sees nothing: no pixel has a return.

@@ -76,6 +76,9 @@ Status IcpConfig::validate() const {
   }
   if (!(max_distance_m > 0.0) || !(max_normal_angle_rad > 0.0)) return fail("pair limits must be positive");
   if (!(max_translation_m > 0.0) || !(max_rotation_rad > 0.0)) return fail("motion limits must be positive");
+  for (const double limit : {converged_m, min_inlier_share, min_agreement, max_rmse_m, min_constraint}) {
+    if (std::isnan(limit)) return fail("the limits of a lost frame must be numbers");
+  }
   return {};
 }
 

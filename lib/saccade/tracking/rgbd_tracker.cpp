@@ -53,6 +53,10 @@ Status RgbdTrackerConfig::validate() const {
     return Error{Errc::invalid_argument, "the bounds of a doubtful fit must be positive and in order",
                  "RGB-D tracking"};
   }
+  if (std::isnan(relocalisation_agreement)) {
+    return Error{Errc::invalid_argument, "the agreement of a frame that is found again must be a number",
+                 "RGB-D tracking"};
+  }
   return keyframes.validate();
 }
 

@@ -140,7 +140,7 @@ std::size_t object_views(const CampaignEntry& run) {
 }
 
 std::optional<bool> objects_come_first(const CampaignEntry& run) {
-  if (std::none_of(run.run.views.begin(), run.run.views.end(), reveals_object)) return std::nullopt;
+  if (std::none_of(run.run.views.begin(), first_views_end(run), reveals_object)) return std::nullopt;
   return std::is_partitioned(run.run.views.begin(), first_views_end(run), reveals_object);
 }
 

@@ -61,6 +61,7 @@ TEST(CampaignFigures, ObjectDirectedViewsAreThoseOfTheFirstFive) {
   EXPECT_EQ(objects_come_first(mixed), false);
   EXPECT_EQ(objects_come_first(with_marks({})), std::nullopt);
   EXPECT_EQ(objects_come_first(with_marks({false, false})), std::nullopt);
+  EXPECT_EQ(objects_come_first(with_marks({false, false, false, false, false, true})), std::nullopt);
 }
 
 TEST(CampaignFigures, SumsAreOverAllViews) {

@@ -236,6 +236,7 @@ CredibleRays::Look CredibleRays::from(const Pose& T_world_camera) const {
   const PinholeCamera& sensor = scene_->sensor;
   std::optional<DepthImage> body;
   if (scene_->own_body) body = scene_->own_body(T_world_camera);
+  SACCADE_EXPECTS(!body || (body->width() == sensor.width && body->height() == sensor.height));
   Look look;
   const auto is_behind_body = [&](const Scene::Met& met, int u, int v) {
     const double body_m = body ? static_cast<double>((*body)(u, v)) : 0.0;

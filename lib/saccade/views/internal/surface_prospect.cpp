@@ -202,6 +202,7 @@ double SurfaceProspect::area_in_picture(std::span<const TileVisibility> sights, 
 Promise SurfaceProspect::promise(const Pose& T_world_camera) const {
   std::optional<DepthImage> body;
   if (own_body_) body = own_body_(T_world_camera);
+  SACCADE_EXPECTS(!body || (body->width() > 0 && body->height() > 0));
   const auto is_behind_body = [&](const Eigen::Vector3f& p) {
     if (!body) return false;
     const Eigen::Vector2d pixel = sensor_.project(p.cast<double>());
