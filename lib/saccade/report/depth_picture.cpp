@@ -48,14 +48,9 @@ ColorImage difference_picture(const DepthImage& a, const DepthImage& b, double l
 }
 
 Panel depth_panel(const DepthImage& depth, const DepthScale& scale, std::string title) {
-  const bool is_wide = depth.width() >= 480;
-  const bool is_narrow = depth.width() < 240;
-  const char* what = is_wide     ? "depth along the optical axis [m], dark: no return"
-                     : is_narrow ? "depth [m]"
-                                 : "depth [m], dark: no return";
   return {depth_picture(depth, scale),
           std::move(title),
-          ColorBar{scale.near_m, scale.far_m, what, 2, is_narrow ? 2 : 5},
+          ColorBar{scale.near_m, scale.far_m, "depth along the optical axis [m], dark: no return", 2, 5},
           depth_colors(),
           {}};
 }

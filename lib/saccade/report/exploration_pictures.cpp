@@ -108,7 +108,12 @@ ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_w
   if (frame.color) paste(page, 0, 0, averaged(*frame.color, width, height));
   const Panel depth = depth_panel(thinned(frame.depth, width, height), scale, {});
   paste(page, depth_x, 0, depth.image);
-  draw_scale(page, depth_x, height, width, *depth.colors, *depth.bar);
+  constexpr int kWide{480};    // room for the whole title
+  constexpr int kNarrow{240};  // room for two ticks
+  ColorBar bar = *depth.bar;
+  if (width < kWide) bar.title = width < kNarrow ? "depth [m]" : "depth [m], dark: no return";
+  if (width < kNarrow) bar.ticks = 2;
+  draw_scale(page, depth_x, height, width, *depth.colors, bar);
   return page;
 }
 

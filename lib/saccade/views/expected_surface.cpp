@@ -192,6 +192,29 @@ Result<StateVolume> read_volume(const TsdfSnapshot& map, const IndexBox& box, co
   return StateVolume::read(map, box, executor);
 }
 
+/// States of a volume, and the supports in it.
+struct SupportedVolume {
+  StateVolume volume;
+  std::vector<Support> supports;
+};
+
+/// Reads the workspace and finds its supports. Where there are none, they are looked for just below it, too: what
+/// stands on a table whose top is the workspace's floor would be taken for something that floats.
+Result<SupportedVolume> read_with_supports(const TsdfSnapshot& map, const IndexBox& box, double min_support_m2,
+                                           const Executor& executor, SurfaceDevice* device) {
+  constexpr std::int32_t kLayersBelow{3};
+  SACCADE_TRY(StateVolume volume, read_volume(map, box, executor, device));
+  std::vector<Support> supports = find_supports(map, volume, min_support_m2, executor);
+  if (!supports.empty() || !map.config.workspace || volume.size() == 0) {
+    return SupportedVolume{std::move(volume), std::move(supports)};
+  }
+  IndexBox deeper = box;
+  deeper.lo.z -= kLayersBelow;
+  SACCADE_TRY(StateVolume with_floor, read_volume(map, deeper, executor, device));
+  supports = find_supports(map, with_floor, min_support_m2, executor);
+  return SupportedVolume{supports.empty() ? std::move(volume) : std::move(with_floor), std::move(supports)};
+}
+
 bool is_behind(std::span<const Wall> walls, const Eigen::Vector3d& p_m) {
   return std::any_of(walls.begin(), walls.end(),
                      [&](const Wall& wall) { return wall.in_front_m(p_m.head<2>()) < 0.0 && wall.faces(p_m); });
@@ -249,13 +272,13 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   const double voxel_m = map.config.voxel_size_m;
   const IndexBox box =
       map.config.workspace ? voxels_with_center_in(*map.config.workspace, voxel_m) : map.grid.known_bounds();
-  SACCADE_TRY(StateVolume read, read_volume(map, box, executor, device));
+  SACCADE_TRY(SupportedVolume read, read_with_supports(map, box, config.min_support_m2, executor, device));
   ExpectedSurface result;
   result.config = config;
-  result.volume = std::make_shared<const StateVolume>(std::move(read));
+  result.volume = std::make_shared<const StateVolume>(std::move(read.volume));
   const StateVolume& volume = *result.volume;
   if (volume.size() == 0) return result;
-  result.supports = find_supports(map, volume, config.min_support_m2, executor);
+  result.supports = std::move(read.supports);
   std::vector<std::vector<std::int32_t>> tops;
   for (const Support& support : result.supports) tops.push_back(top_layers(volume, support));
   result.walls = find_walls(volume, config.min_wall_m2, executor);
@@ -278,13 +301,14 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
     if (auto exposed = device->exposed(volume.ticket(), task); exposed.ok()) all = std::move(exposed).value();
   }
   const std::int32_t block = std::max(1, static_cast<std::int32_t>(std::lround(config.spacing_m / voxel_m)));
-  std::vector<Points> slabs(static_cast<std::size_t>((box.size().z - 1) / block + 1));
+  std::vector<Points> slabs(static_cast<std::size_t>((volume.box().size().z - 1) / block + 1));
   executor.parallel_for(slabs.size(), 1, [&](std::size_t slab, std::size_t) {
     const std::int32_t first = static_cast<std::int32_t>(slab) * block;
     std::vector<ExposedVoxel> exposed = all ? those_in_layers(volume, *all, first, first + block)
                                             : exposed_in_layers(volume, task, first, first + block);
     std::erase_if(exposed, [&](const ExposedVoxel& e) {
-      return is_behind(result.walls, voxel_center(volume.voxel(e.voxel), voxel_m));
+      const Index3 voxel = volume.voxel(e.voxel);
+      return voxel.z < box.lo.z || is_behind(result.walls, voxel_center(voxel, voxel_m));
     });
     const auto beside =
         std::stable_partition(exposed.begin(), exposed.end(), [](const ExposedVoxel& e) { return e.completed != 0; });

@@ -62,6 +62,18 @@ TEST(ExpectedSurface, SidesThatWereNotSeenAreExpectedDownToTheTable) {
   EXPECT_LT(area_facing(surface, {0, 0, 1}), 5.0);
 }
 
+TEST(ExpectedSurface, ATableWhoseTopIsTheFloorOfTheWorkspaceIsASupport) {
+  TsdfSnapshot map = map_of(half_a_box);
+  const ExpectedSurface whole = surface_of(map);
+  map.config.workspace->min.z() = 0.0;
+  const ExpectedSurface surface = surface_of(map);
+  ASSERT_EQ(surface.supports.size(), 1U);
+  EXPECT_NEAR(surface.supports.front().height_m, 0.0, 1e-9);
+  EXPECT_NEAR(area_facing(surface, {-1, 0, 0}), area_facing(whole, {-1, 0, 0}), 1.0);
+  EXPECT_LT(area_facing(surface, {0, 0, -1}), 5.0) << "nothing is looked for from below";
+  for (const ExpectedPoint& point : surface.points) EXPECT_GT(point.position_m.z(), 0.0F);
+}
+
 TEST(ExpectedSurface, ThereIsNoneWithoutAnObject) {
   const ExpectedSurface surface = surface_of(map_of(table_at));
   EXPECT_TRUE(surface.points.empty());
