@@ -41,6 +41,25 @@ std::string size_text(const Eigen::Vector3d& size_m) {
   return text.str();
 }
 
+/// Turns a closed surface that is inside out: what can be seen of an object goes by its outward normals.
+void turn_outside_out(TriangleMesh& mesh, const Eigen::Vector3d& middle) {
+  constexpr double kClosed{1e-3};  // the area vectors of a closed surface cancel out
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();
+  double whole_area{0.0};
+  double volume{0.0};
+  for (const auto& triangle : mesh.triangles) {
+    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
+      return mesh.vertices[triangle[i]].cast<double>() - middle;
+    };
+    const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    area += normal;
+    whole_area += normal.norm();
+    volume += corner(0).dot(normal);
+  }
+  if (!(volume < 0.0) || area.norm() > kClosed * whole_area) return;
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+}
+
 /// Returns a hint with the likely unit of the file; empty where none would fit.
 std::string scale_hint(const Eigen::Vector3d& size_units) {
   struct Unit {
@@ -95,6 +114,7 @@ Result<Scene> mesh_scene(const fs::path& path, const MeshSceneConfig& config) {
     vertex = (config.scale * (vertex.cast<double>() - foot)).cast<float>();
   }
   mesh.normals.clear();
+  turn_outside_out(mesh, config.scale * (bounds.center() - foot));
   Scene scene = empty_tabletop(path.filename().string());
   SceneObject object;
   object.name = "object";

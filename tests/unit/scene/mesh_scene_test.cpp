@@ -47,6 +47,20 @@ TEST(MeshScene, IsScaledAndTurned) {
   EXPECT_LT((placed(*upright).max - Eigen::Vector3d{0.15, 0.05, 0.2}).norm(), 1e-6);
 }
 
+TEST(MeshScene, IsTurnedWhereItIsInsideOut) {
+  const TempFolder folder;
+  TriangleMesh box = tessellate(BoxShape{{0.3, 0.2, 0.1}}).value();
+  const auto read = [&](const TriangleMesh& mesh) {
+    EXPECT_TRUE(write_mesh(folder / "box.ply", mesh));
+    return std::get<MeshShape>(mesh_scene(folder / "box.ply")->objects.back().shape).mesh.triangles;
+  };
+  const auto upright = read(box);
+  for (auto& triangle : box.triangles) std::swap(triangle[1], triangle[2]);
+  EXPECT_EQ(read(box), upright);
+  box.triangles.resize(box.triangles.size() / 2);  // open: either side may be meant
+  EXPECT_EQ(read(box), box.triangles);
+}
+
 TEST(MeshScene, RefusesWhatHasNoPlaceAndSaysWhatWouldDo) {
   const TempFolder folder;
   const auto hint = [&](const Eigen::Vector3d& size_units, double scale = 1.0) {
