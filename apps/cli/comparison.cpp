@@ -102,6 +102,7 @@ Status Comparison::add_scene(Scene scene, const std::string& given_as) {
     return Error{Errc::invalid_argument, "there is no object in the scene, so that there is nothing to explore",
                  given_as};
   }
+  SACCADE_CHECK(check_workspace(scene, options_.run.run.map().voxel_size_m));
   SACCADE_TRY(RayScene rays, RayScene::build(std::move(scene)));
   ComparedScene compared{rays.scene().name, scene_hash(rays), rays};
   const auto twin = std::find_if(scenes_.begin(), scenes_.end(),

@@ -62,22 +62,6 @@ Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options, Progress
   return std::optional{std::move(read->arm)};
 }
 
-/// Views are chosen among all voxels of the workspace: there must be some, and not more than a memory holds.
-Status check_workspace(const Scene& scene, double voxel_size_m) {
-  constexpr double kMostVoxels{4e9};
-  const Eigen::Vector3d size_m = scene.workspace.max - scene.workspace.min;
-  const Index3 voxels = voxels_with_center_in(scene.workspace, voxel_size_m).size();
-  const double count = static_cast<double>(voxels.x) * voxels.y * voxels.z;
-  const bool is_small = std::min({voxels.x, voxels.y, voxels.z}) < 1;
-  if (!is_small && count <= kMostVoxels) return {};
-  return Error{Errc::invalid_argument,
-               "the workspace of " + fixed(size_m.x(), 3) + " x " + fixed(size_m.y(), 3) + " x " +
-                   fixed(size_m.z(), 3) + " m " +
-                   (is_small ? "holds no voxel of " : "holds more than 4,000,000,000 voxels of ") +
-                   fixed(1e3 * voxel_size_m, 1) + " mm; are its lengths in metres? If so, change --voxel-size",
-               scene.name};
-}
-
 Result<ExploreSetup> open_case(const ExploreOptions& options, const Executor& executor) {
   SACCADE_TRY(Scene scene, find_scene(options.scene, options.mesh));
   SACCADE_CHECK(check_workspace(scene, options.run.map().voxel_size_m));

@@ -220,7 +220,8 @@ Status remove_earlier_frames(const RunFolder& out) {
 std::vector<std::string> reasons_of(const std::vector<LeftOutFile>& left_out) {
   std::vector<std::pair<std::string, std::size_t>> reasons;
   std::vector<std::string> firsts;
-  for (const auto& [file, error] : left_out) {
+  for (const LeftOutFile& each : left_out) {
+    const Error& error = each.error;
     if (error.code == Errc::unsupported) continue;
     const auto same = [&error](const auto& reason) { return reason.first == error.message; };
     const auto found = std::find_if(reasons.begin(), reasons.end(), same);

@@ -82,6 +82,21 @@ void check_foresight(const RunOptions& options, const std::string& robot) {
   }
 }
 
+Status check_workspace(const Scene& scene, double voxel_size_m) {
+  constexpr double kMostVoxels{4e9};
+  const Eigen::Vector3d size_m = scene.workspace.max - scene.workspace.min;
+  const Index3 voxels = voxels_with_center_in(scene.workspace, voxel_size_m).size();
+  const double count = static_cast<double>(voxels.x) * voxels.y * voxels.z;
+  const bool is_small = std::min({voxels.x, voxels.y, voxels.z}) < 1;
+  if (!is_small && count <= kMostVoxels) return {};
+  return Error{Errc::invalid_argument,
+               "the workspace of " + fixed(size_m.x(), 3) + " x " + fixed(size_m.y(), 3) + " x " +
+                   fixed(size_m.z(), 3) + " m " +
+                   (is_small ? "holds no voxel of " : "holds more than 4,000,000,000 voxels of ") +
+                   fixed(1e3 * voxel_size_m, 1) + " mm; are its lengths in metres? If so, change --voxel-size",
+               scene.name};
+}
+
 void check_run_options(RunOptions& options) {
   if (options.min_gain && !(*options.min_gain >= 0.0 && std::isfinite(*options.min_gain))) {
     usage_error("--min-gain", "must be a number of at least 0");

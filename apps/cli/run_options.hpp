@@ -36,6 +36,9 @@ void check_foresight(const RunOptions& options, const std::string& robot);
 /// After parsing: fills `run` but for its strategy, threshold and seed, and throws a usage error for what makes no
 /// sense.
 void check_run_options(RunOptions& options);
+/// Views are chosen among all voxels of the workspace: there must be some, and not more than a memory holds. Answers
+/// invalid_argument with the scene's name.
+[[nodiscard]] Status check_workspace(const Scene& scene, double voxel_size_m);
 /// "50 rays for attention, …"
 [[nodiscard]] std::string min_gain_by_strategy();
 /// Sets the strategy of `run`, and the threshold that goes with it unless one was given.

@@ -21,6 +21,9 @@ TEST(BadSettings, AWorkspaceOfNoVoxelOrOfTooMany) {
   };
   expect_failure(explored("{min: [-350, -350, -30], max: [350, 350, 300]}"), 3, "explore",
                  {"cube", "700.000 x 700.000 x 330.000 m", "metres"});
+  expect_failure(run_program({"compare", "--scenes", (folder / "scene.yaml").string(), "--strategies", "sphere",
+                              "--out", (folder / "compared").string()}),
+                 3, "compare", {"cube", "metres"});
   expect_failure(explored("{min: [0, 0, 0], max: [0.001, 0.001, 0.001]}"), 3, "explore", {"cube", "no voxel"});
 }
 
