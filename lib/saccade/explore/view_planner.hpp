@@ -14,7 +14,7 @@ namespace saccade {
 
 struct ViewPlannerConfig {
   /// IncTh of Algorithm 1, ScoreTH of Algorithm 4, in the unit of the gain: a region whose best view gains less is
-  /// done.
+  /// done. Finite, 0 or more.
   double min_gain{200.0};
   /// Smallest saliency of rival regions, relative to the most salient region with a view worth trying. The view with
   /// the largest gain among these regions is next. Thesis Algorithm 4 takes the most salient region alone: 1. Decision

@@ -33,7 +33,7 @@ constexpr std::size_t kFirstViews{5};
 /// Counts, among the first kFirstViews views, those that point at an object.
 [[nodiscard]] std::size_t object_views(const CampaignEntry& run);
 
-/// Tells whether, among these, all views that point at an object come before all others. nullopt without views.
+/// Tells whether, among these, all views that point at an object come before all others. nullopt where none does.
 [[nodiscard]] std::optional<bool> objects_come_first(const CampaignEntry& run);
 
 /// Measure of a run. For people, a value is shown times `scale`, with `decimals` decimals and the unit.
