@@ -9,6 +9,7 @@ seed, so that an interrupted campaign has whole seeds of all scenes; the same ca
 Exit status 0: complete, and all that is held to was met; 1: something was missed; 2: a campaign failed; 3: not complete.
 SACCADE_HEADLINE_SEEDS: how many seeds (10). SACCADE_SLURM=off: runs here although a cluster answers.
 SACCADE_SLURM_OPTIONS: further options of `compare --slurm`, as "--partition long --time 2:00:00"."""
+import json
 import math
 import os
 import pathlib
@@ -17,7 +18,8 @@ import statistics
 import subprocess
 import sys
 
-from evidence_campaign import INTERRUPTED, STILL_QUEUED, cluster_answers, slurm_options
+from evidence_campaign import (INTERRUPTED, STILL_QUEUED, cluster_answers, failed_slices, has_begun, has_shards, note_submission,
+                               print_failed, slurm_options)
 from evidence_planner import Figures, Held, calibration, student_t
 
 SCENES = 100
@@ -48,11 +50,36 @@ def run(program, folder, kind, seeds):
     """@return false where the campaign failed."""
     if not cluster_answers():
         return all(compare(program, folder, options(kind, upto)) for upto in range(1, seeds + 1))
-    merged = not (folder / "campaign/shards").is_dir() or compare(program, folder, [*options(kind, seeds), "--merge"])
-    if not merged or missing(folder, seeds) == 0:
-        return merged
-    submitted = compare(program, folder, [*options(kind, seeds), "--slurm", *slurm_options()])
-    return submitted or STILL_QUEUED in (folder / "log.txt").read_text().rstrip().splitlines()[-1]
+    campaign, wanted, merged = folder / "campaign", options(kind, seeds), 0
+    if has_shards(campaign) and not compare(program, folder, [*wanted, "--merge"]):
+        return False
+    if has_begun(campaign):
+        status = status_of(program, folder, wanted)
+        if status is None:
+            return False
+        merged = status["runs"]["merged"]
+        if failed := failed_slices(campaign, status):
+            print_failed(failed)
+            return False
+    if missing(folder, seeds) == 0:
+        return True
+    if compare(program, folder, [*wanted, "--slurm", *slurm_options()]):
+        note_submission(campaign, merged)
+        return True
+    return STILL_QUEUED in ((folder / "log.txt").read_text().rstrip().splitlines() or [""])[-1]
+
+
+def status_of(program, folder, arguments):
+    """The result of --status; None where it failed."""
+    command = [program, "--quiet", "compare", *arguments, "--status", "--json", "-", "--out", str(folder / "campaign")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode in INTERRUPTED:
+        sys.exit(done.returncode)
+    if done.returncode:
+        with (folder / "log.txt").open("a") as log:
+            log.write(done.stderr)
+        return None
+    return json.loads(done.stdout)["result"]
 
 
 def missing(folder, seeds):

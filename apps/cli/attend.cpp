@@ -9,12 +9,14 @@
 #include "length_options.hpp"
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 
 namespace saccade::cli {
 namespace {
 
+using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 1> kAttendFiles{"attend.json"};
@@ -33,6 +35,18 @@ Result<std::vector<fs::path>> trajectory_files(const AttendOptions& options) {
   return files;
 }
 
+/// The speed between samples that three of four moves stay below; 0 without moves. Single jumps of the sensor do not
+/// count.
+double moving_speed_mps(const HandTrajectory& trajectory) {
+  std::vector<double> speeds_mps;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const double step_s = trajectory[i].time_s - trajectory[i - 1].time_s;
+    const double step_m = (trajectory[i].position_m - trajectory[i - 1].position_m).norm();
+    if (step_s > 0.0 && step_m > 0.0) speeds_mps.push_back(step_m / step_s);
+  }
+  return speeds_mps.empty() ? 0.0 : nth_smallest(speeds_mps, 3 * speeds_mps.size() / 4);
+}
+
 /// One trajectory through the detector; nullopt for one that is left out.
 Result<std::optional<AttendedTrajectory>> attend_one(const fs::path& file, std::size_t index,
                                                      const AttendOptions& options, const AttendDetector& detector) {
@@ -42,7 +56,7 @@ Result<std::optional<AttendedTrajectory>> attend_one(const fs::path& file, std::
     SACCADE_TRY(labelled.labels_m, read_hand_labels(file));
     if (options.conditions.exclude_mislabelled && is_mislabelled(labelled)) return std::optional<AttendedTrajectory>{};
   }
-  AttendedTrajectory attended{file, recording.report, {}, {}, 0.0, std::nullopt};
+  AttendedTrajectory attended{file, recording.report, {}, {}, 0.0, std::nullopt, moving_speed_mps(labelled.trajectory)};
   // The conditions as evaluate_detector makes them, and its scores; the findings are kept on the way.
   const HandActionDetector keeping = [&](const HandTrajectory& given) -> Result<std::vector<HandAction>> {
     const Stopwatch watch;
@@ -77,10 +91,11 @@ Result<AttendResult> attend_all(const std::vector<fs::path>& files, const Attend
   return result;
 }
 
-Status write_pictures(const RunFolder& out, const AttendOptions& options, const AttendResult& result,
-                      ProgressBar& bar) {
-  for (std::size_t i = 0; i < result.trajectories.size(); ++i) {
-    if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
+/// Draws until all is drawn, or Ctrl-C. Returns the number of trajectories that are drawn.
+Result<std::size_t> write_pictures(const RunFolder& out, const AttendOptions& options, const AttendResult& result,
+                                   ProgressBar& bar) {
+  std::size_t i{0};
+  for (; i < result.trajectories.size() && !interrupted(); ++i) {
     bar.update("drawing", i, result.trajectories.size());
     SACCADE_CHECK(write_png(out / attend_picture_name(i), attend_picture(options, result.trajectories[i])));
     const std::string speed_name = attend_speed_name(i);
@@ -91,7 +106,7 @@ Status write_pictures(const RunFolder& out, const AttendOptions& options, const 
       SACCADE_CHECK(write_file_atomically(out / speed_name, speed_plot));
     }
   }
-  return {};
+  return i;
 }
 
 class Attend final : public Command {
@@ -136,16 +151,29 @@ class Attend final : public Command {
     SACCADE_TRY(const std::vector<fs::path> files, trajectory_files(attend_));
     SACCADE_TRY(const AttendResult result, attend_all(files, attend_, context.bar()));
     context.lap("attend");
-    std::string text = attend_text(attend_, result);
+    Outcome outcome{.result = attend_json(attend_, result), .text = attend_text(attend_, result)};
     if (context.folder() != nullptr) {
-      if (pictures_) SACCADE_CHECK(write_pictures(*context.folder(), attend_, result, context.bar()));
-      text += "results: " + context.out().string() + "\n";
+      SACCADE_TRY([[maybe_unused]] const json document, context.write_document(outcome.result));
+      if (pictures_) SACCADE_CHECK(draw(context, result, outcome));
+      outcome.text += "results: " + context.out().string() + "\n";
     }
-    return Outcome{.result = attend_json(attend_, result), .text = std::move(text)}.empty_if(
-        result.actions() == 0, "no action was found in any trajectory");
+    if (std::string warning = attend_units_warning(result); !warning.empty()) {
+      outcome.warnings.push_back(std::move(warning));
+    }
+    return std::move(outcome).empty_if(result.actions() == 0, "no action was found in any trajectory");
   }
 
  private:
+  /// The findings are written before: they stay when the pictures do not come to their end.
+  [[nodiscard]] Status draw(Context& context, const AttendResult& result, Outcome& outcome) const {
+    SACCADE_TRY(const std::size_t drawn, write_pictures(*context.folder(), attend_, result, context.bar()));
+    if (drawn == result.trajectories.size()) return {};
+    outcome.cut_short = "interrupted after " + std::to_string(drawn) + " of " +
+                        std::to_string(result.trajectories.size()) + " pictures; all actions are in " +
+                        (*context.folder() / kAttendFiles.front()).string();
+    return {};
+  }
+
   void declare_conditions(Options& options) {
     EvaluationConditions& conditions = attend_.conditions;
     options.value("--speed", conditions.speed, "K", "resample to K times as many samples first: 0.25 is a fast hand");

@@ -33,6 +33,7 @@ struct AttendedTrajectory {
   AttentionFindings findings;
   double ms{0.0};
   std::optional<TrajectoryScore> score;  ///< with --evaluate
+  double speed_mps{0.0};                 ///< typical one of the hand in the file while it moves
 };
 
 struct AttendResult {
@@ -48,6 +49,8 @@ struct AttendResult {
 [[nodiscard]] nlohmann::json attend_json(const AttendOptions& options, const AttendResult& result);
 /// For people: the actions of each trajectory, or with --evaluate how good the detector is.
 [[nodiscard]] std::string attend_text(const AttendOptions& options, const AttendResult& result);
+/// Warns of the first trajectory whose speeds no hand has, as other units give; empty where there is none.
+[[nodiscard]] std::string attend_units_warning(const AttendResult& result);
 /// Names of a trajectory's picture and of the plot of its speed, from its number.
 [[nodiscard]] std::string attend_picture_name(std::size_t index);
 [[nodiscard]] std::string attend_speed_name(std::size_t index);

@@ -30,11 +30,18 @@ json trajectory_json(const AttendedTrajectory& trajectory) {
   return entry;
 }
 
+/// Eight characters, and more where the number needs them: columns never touch.
+std::string coordinate_column(double metres) {
+  constexpr std::size_t kWidth{8};
+  const std::string number = fixed(metres, 3);
+  return std::string(number.size() < kWidth ? kWidth - number.size() : 1, ' ') + number;
+}
+
 void list_actions(const AttendedTrajectory& trajectory, std::ostream& text) {
   text << trajectory.file.string() << ": " << trajectory.report.to_string() << '\n';
   for (const HandAction& action : trajectory.findings.actions) {
     text << std::setw(8) << fixed(action.time_s, 2) << " s ";
-    for (Eigen::Index axis = 0; axis < 3; ++axis) text << std::setw(8) << fixed(action.position_m[axis], 3);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) text << coordinate_column(action.position_m[axis]);
     text << " m  " << action.why << '\n';
   }
   if (trajectory.findings.actions.empty()) text << "  no action\n";
@@ -148,6 +155,16 @@ std::string attend_text(const AttendOptions& options, const AttendResult& result
   std::ostringstream text;
   for (const AttendedTrajectory& trajectory : result.trajectories) list_actions(trajectory, text);
   return text.str();
+}
+
+std::string attend_units_warning(const AttendResult& result) {
+  constexpr double kFastest_mps{20.0};
+  for (const AttendedTrajectory& trajectory : result.trajectories) {
+    if (!(trajectory.speed_mps > kFastest_mps)) continue;
+    return "warning: " + trajectory.file.string() + ": hands do not move at " + fixed(trajectory.speed_mps, 0) +
+           " m/s; give positions in metres, not millimetres, and times in seconds";
+  }
+  return {};
 }
 
 std::string attend_picture_name(std::size_t index) { return numbered_name(index, ".png"); }

@@ -17,25 +17,59 @@ Planners benchmark_planners(const Planners& planners) {
   return all;
 }
 
-/// "figure" of "figure@12".
-std::string object_of(const Scene& scene) { return scene.name.substr(0, scene.name.find('@')); }
+/// Names of the objects that a protocol may have.
+std::vector<std::string> object_names(const Benchmark& benchmark, bool from_meshes) {
+  if (benchmark.has_own_scenes()) return benchmark.scenes;
+  if (!from_meshes) return benchmark.stand_ins;
+  std::vector<std::string> names;
+  for (const BenchmarkMesh& mesh : benchmark.meshes) names.push_back(std::filesystem::path{mesh.file}.stem().string());
+  return names;
+}
 
-/// Leaves the named objects, with all their first views. invalid_argument for one that is not there.
-Status keep_only(BenchmarkPlan& plan, const std::vector<std::string>& wanted) {
-  std::vector<std::string> objects;
-  for (const Scene& scene : plan.scenes) {
-    std::string object = object_of(scene);
-    if (objects.empty() || objects.back() != object) objects.push_back(std::move(object));
+/// What the scenes of an object are called after it: "@4", "@12" …; nothing where there is one scene.
+std::vector<std::string> start_names(const Benchmark& benchmark) {
+  std::vector<std::string> names;
+  if (benchmark.starts == 1) return names;
+  const Result<BenchmarkPlan> plan = plan_benchmark(benchmark, std::nullopt);  // they are equal for all objects
+  if (!plan) usage_error("--only", plan.error().message);
+  const std::string first = object_of(benchmark, plan->scenes.front().name);
+  for (const Scene& scene : plan->scenes) {
+    if (object_of(benchmark, scene.name) == first) names.push_back(scene.name.substr(first.size()));
+  }
+  return names;
+}
+
+/// Throws a usage error for what is neither an object nor an object and one of its first views.
+void check_wanted(const std::vector<std::string>& wanted, const Benchmark& benchmark, bool from_meshes) {
+  const std::vector<std::string> objects = object_names(benchmark, from_meshes);
+  std::vector<std::string> names = objects;
+  for (const std::string& start : start_names(benchmark)) {
+    for (const std::string& object : objects) names.push_back(object + start);
   }
   for (const std::string& name : wanted) {
-    if (std::find(objects.begin(), objects.end(), name) != objects.end()) continue;
-    const std::vector<std::string_view> known{objects.begin(), objects.end()};
-    return Error{Errc::invalid_argument,
-                 "there is no object \"" + name + "\"; there are " + joined(objects) + did_you_mean(name, known),
-                 "--only"};
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    std::string message = "there is no object \"" + name + "\"; there are " + joined(objects);
+    if (names.size() > objects.size()) message += "; one first view of an object is such as " + names[objects.size()];
+    usage_error("--only", message + did_you_mean(name, std::vector<std::string_view>{names.begin(), names.end()}));
+  }
+}
+
+/// Leaves the named objects, with all their first views, and the named scenes. not_found for one whose mesh is not
+/// in the folder.
+Status keep_only(BenchmarkPlan& plan, const Benchmark& benchmark, const std::vector<std::string>& wanted,
+                 const std::string& folder) {
+  const auto is = [&benchmark](const Scene& scene, const std::string& name) {
+    return name == scene.name || name == object_of(benchmark, scene.name);
+  };
+  for (const std::string& name : wanted) {
+    if (std::any_of(plan.scenes.begin(), plan.scenes.end(), [&](const Scene& scene) { return is(scene, name); }))
+      continue;
+    return Error{Errc::not_found,
+                 "there is no mesh of " + name + " here; there are " + joined(objects_of(benchmark, plan.scenes)),
+                 folder};
   }
   std::erase_if(plan.scenes, [&](const Scene& scene) {
-    return std::find(wanted.begin(), wanted.end(), object_of(scene)) == wanted.end();
+    return std::none_of(wanted.begin(), wanted.end(), [&](const std::string& name) { return is(scene, name); });
   });
   return {};
 }
@@ -93,7 +127,10 @@ class BenchmarkCommand final : public Command {
     options.value("--strategies", compare_.strategy_list, "LIST",
                   "strategies instead of the protocol's, separated by commas; the first is set beside published "
                   "figures. surface-one-shot chooses all views at once");
-    options.value("--only", only_, "LIST", "objects instead of all of the protocol's, separated by commas");
+    options.value(
+        "--only", only_, "LIST",
+        "objects instead of all of the protocol's, separated by commas; OBJECT@VIEW is one of its first views, as "
+        "--list shows them");
     add_campaign_options(options.group(), compare_);
     command_ = &options.group();
   }
@@ -110,6 +147,7 @@ class BenchmarkCommand final : public Command {
     if (request_->path.empty()) usage_error("--out", "a folder for the results is needed");
     benchmark_ = *found;
     if (!only_.empty()) wanted_ = list_parts("--only", only_);
+    if (!wanted_.empty()) check_wanted(wanted_, benchmark_, !objects_.empty());
     check_campaign_options(compare_);
     const std::string names =
         compare_.strategy_list.empty() ? joined(benchmark_.strategies, ",") : compare_.strategy_list;
@@ -122,7 +160,7 @@ class BenchmarkCommand final : public Command {
     std::optional<std::filesystem::path> objects;
     if (!objects_.empty()) objects = objects_;
     SACCADE_TRY(BenchmarkPlan plan, plan_benchmark(benchmark_, objects));
-    if (!wanted_.empty()) SACCADE_CHECK(keep_only(plan, wanted_));
+    if (!wanted_.empty()) SACCADE_CHECK(keep_only(plan, benchmark_, wanted_, objects_));
     SACCADE_TRY(const Comparison comparison, Comparison::create(options_for(context, plan), plan.scenes));
     return run_campaign(context, comparison,
                         [&](const Campaign& campaign, const ComparedRuns& compared, nlohmann::json& result) {
@@ -149,7 +187,8 @@ class BenchmarkCommand final : public Command {
       SACCADE_TRY(measured, measure_runs(context, benchmark_, comparison, campaign, compared.runs));
       context.lap("measuring");
     }
-    const std::vector<BenchmarkRow> table = benchmark_table(benchmark_, measured, compared);
+    const auto planned = result.at("runs").at("planned").get<std::size_t>();
+    const BenchmarkTable table = benchmark_table(benchmark_, measured, compared, planned);
     SACCADE_CHECK(write_benchmark(context.out(), benchmark_, plan, table, measured));
     result["benchmark"] = benchmark_json(benchmark_, plan, table);
     return benchmark_text(benchmark_, plan, table);

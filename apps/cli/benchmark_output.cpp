@@ -34,29 +34,75 @@ std::vector<std::string> strategies_in(const ComparedRuns& compared) {
   return strategies;
 }
 
-/// Mean over scenes, each with the mean of its runs: seeds of one scene are not samples of scenes.
-MeanEstimate over_scenes(const std::vector<MeasuredRun>& measured, const std::string& strategy, std::size_t views,
-                         double CoverageShares::*share) {
-  std::map<std::string, std::vector<double>> of_scene;
-  for (const MeasuredRun& run : measured) {
-    if (run.key.strategy == strategy) of_scene[run.key.scene].push_back(run.curve.after[views - 1].*share);
+/// What runs of different strategies have in common.
+using SceneAndSeed = std::pair<std::string, std::uint64_t>;
+
+/// Those of which all strategies have a run.
+std::set<SceneAndSeed> shared_by(const std::vector<std::string>& strategies, const ComparedRuns& compared) {
+  std::map<SceneAndSeed, std::set<std::string>> run_by;
+  for (const CampaignEntry& run : compared.runs) run_by[{run.key.scene, run.key.seed}].insert(run.key.strategy);
+  std::set<SceneAndSeed> shared;
+  for (const auto& [place, by] : run_by) {
+    if (by.size() == strategies.size()) shared.insert(place);
   }
-  std::vector<double> means;
-  for (const auto& [scene, values] : of_scene) means.push_back(mean(values));
-  return estimate_mean(means);
+  return shared;
 }
 
-BenchmarkRow row_of_own_scenes(const ComparedRuns& compared, const std::string& strategy) {
+/// The runs, measured or of a campaign, that are of these.
+template <class Run>
+std::vector<Run> runs_in(const std::set<SceneAndSeed>& places, const std::vector<Run>& runs) {
+  std::vector<Run> kept;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(kept), [&places](const Run& run) {
+    return places.count({run.key.scene, run.key.seed}) > 0;
+  });
+  return kept;
+}
+
+/// Mean over objects of a figure of a curve.
+template <class Figure>
+MeanEstimate over_objects(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
+                          const std::string& strategy, const Figure& figure) {
+  std::map<std::string, std::map<std::string, std::vector<double>>> of_object;  // by scene, whose seeds they are
+  for (const MeasuredRun& run : measured) {
+    if (run.key.strategy != strategy) continue;
+    of_object[object_of(benchmark, run.key.scene)][run.key.scene].push_back(figure(run.curve));
+  }
+  std::vector<double> of_objects;
+  for (const auto& [object, of_scene] : of_object) {
+    std::vector<double> of_starts;
+    for (const auto& [scene, values] : of_scene) of_starts.push_back(mean(values));
+    of_objects.push_back(mean(of_starts));
+  }
+  return estimate_mean(of_objects);
+}
+
+BenchmarkRow row_after(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
+                       const std::string& strategy, std::size_t views) {
+  const auto over = [&](const auto& figure) { return over_objects(benchmark, measured, strategy, figure); };
   BenchmarkRow row;
   row.method = strategy;
-  for (const CampaignSummary& summary : compared.summaries) {
-    // The summary over all scenes comes after those of each, and replaces them; one scene has none over all.
-    if (summary.group.strategy != strategy) continue;
-    row.views = summary.of("views").mean;
-    row.of_visible = summary.of("coverage");
-    row.path_m = summary.of("path_m");
-    row.motion_s = summary.of("motion_s");
-  }
+  row.views = static_cast<double>(views);
+  row.taken = over([views](const BenchmarkCurve& curve) { return static_cast<double>(std::min(views, curve.taken)); });
+  row.of_visible = over([views](const BenchmarkCurve& curve) { return curve.after[views - 1].of_visible; });
+  row.of_all = over([views](const BenchmarkCurve& curve) { return curve.after[views - 1].of_all; });
+  return row;
+}
+
+BenchmarkRow row_of_own_scenes(const std::vector<CampaignSummary>& summaries, const std::string& strategy) {
+  const auto over_scenes = [&](const char* figure) {
+    std::vector<double> means;
+    for (const CampaignSummary& summary : summaries) {
+      if (!summary.group.scene || summary.group.strategy != strategy || summary.of(figure).n == 0) continue;
+      means.push_back(summary.of(figure).mean);
+    }
+    return estimate_mean(means);
+  };
+  BenchmarkRow row;
+  row.method = strategy;
+  row.views = over_scenes("views").mean;
+  row.of_visible = over_scenes("coverage");
+  row.path_m = over_scenes("path_m");
+  row.motion_s = over_scenes("motion_s");
   return row;
 }
 
@@ -66,6 +112,9 @@ std::string shown(const std::optional<MeanEstimate>& estimate, double scale, int
   if (estimate->half_width) text += " ± " + fixed(scale * *estimate->half_width, decimals);
   return text;
 }
+
+/// "12", or "12.2" of a mean.
+std::string views_text(double views) { return fixed(views, views == std::floor(views) ? 0 : 1); }
 
 std::string padded_to(std::string text, std::size_t width) {
   const auto characters = static_cast<std::size_t>(
@@ -98,13 +147,59 @@ std::string what_counts(const Benchmark& benchmark) {
   return "coverage: share of the surface's points with a measured point within " + size;
 }
 
-std::string objects_text(const BenchmarkPlan& plan) { return joined(plan.scenes, ", ", &Scene::name); }
+std::string objects_text(const Benchmark& benchmark, const BenchmarkPlan& plan) {
+  const std::vector<std::string> objects = objects_of(benchmark, plan.scenes);
+  std::string text = joined(objects);
+  if (plan.scenes.size() > objects.size()) {
+    text += "; begun from " + std::to_string(plan.scenes.size()) + " first views in all";
+  }
+  return text;
+}
+
+/// Says what the table of an interrupted benchmark is over.
+std::string incomplete_text(const BenchmarkTable& table) {
+  std::string text = "INCOMPLETE: " + std::to_string(table.done) + " of " + std::to_string(table.planned) +
+                     " runs so far; nothing is said beside published figures\n          ";
+  if (table.each_strategy == 0) return text + "there is no object that all strategies with runs have in common yet\n";
+  return text + "the table has " + std::to_string(table.each_strategy) + (table.each_strategy == 1 ? " run" : " runs") +
+         " of each strategy: the objects, first views and seeds that all strategies with runs have in common\n";
+}
 
 /// Width of the first column.
-std::size_t method_width(const std::vector<BenchmarkRow>& table) {
+std::size_t method_width(const BenchmarkTable& table) {
   std::size_t width = 0;
-  for (const BenchmarkRow& row : table) width = std::max(width, row.method.size() + 2);
+  for (const BenchmarkRow& row : table.rows) width = std::max(width, row.method.size() + 2);
   return width;
+}
+
+void print_rows(std::ostream& text, const Benchmark& benchmark, const BenchmarkTable& table) {
+  constexpr std::size_t kViews{8};
+  constexpr std::size_t kColumn{16};
+  const std::size_t width = method_width(table);
+  text << padded_to("method", width) << padded_to("views", kViews);
+  if (benchmark.rule) {
+    text << padded_to("taken", kViews) << padded_to("of visible, %", kColumn) << padded_to("of all, %", kColumn);
+  } else {
+    text << padded_to("coverage, %", kColumn) << padded_to("path, m", kColumn) << padded_to("motion, s", kColumn);
+  }
+  text << "source\n";
+  for (const BenchmarkRow& row : table.rows) {
+    text << padded_to(row.method, width) << padded_to(views_text(row.views), kViews);
+    if (row.published) {
+      text << padded_to("", kViews) << padded_to("", kColumn)
+           << padded_to(fixed(100.0 * row.published->coverage, 1), kColumn) << "["
+           << source_number(benchmark, row.published->source) << "] " << row.published->object << '\n';
+      continue;
+    }
+    if (benchmark.rule) {
+      text << padded_to(row.taken ? fixed(row.taken->mean, 1) : "-", kViews)
+           << padded_to(shown(row.of_visible, 100.0, 1), kColumn) << padded_to(shown(row.of_all, 100.0, 1), kColumn);
+    } else {
+      text << padded_to(shown(row.of_visible, 100.0, 1), kColumn) << padded_to(shown(row.path_m, 1.0, 2), kColumn)
+           << padded_to(shown(row.motion_s, 1.0, 1), kColumn);
+    }
+    text << "this run\n";
+  }
 }
 
 json row_json(const BenchmarkRow& row) {
@@ -112,6 +207,7 @@ json row_json(const BenchmarkRow& row) {
   const auto add = [&value](const char* name, const std::optional<MeanEstimate>& estimate) {
     if (estimate) value[name] = estimate_json(*estimate);
   };
+  add("views_taken", row.taken);
   add("of_visible", row.of_visible);
   add("of_all", row.of_all);
   add("path_m", row.path_m);
@@ -128,91 +224,82 @@ json row_json(const BenchmarkRow& row) {
 
 }  // namespace
 
-std::vector<BenchmarkRow> benchmark_table(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
-                                          const ComparedRuns& compared) {
-  std::vector<BenchmarkRow> table;
-  for (const std::string& strategy : strategies_in(compared)) {
-    if (!benchmark.rule) {
-      table.push_back(row_of_own_scenes(compared, strategy));
-      continue;
+std::string object_of(const Benchmark& benchmark, const std::string& scene) {
+  return benchmark.starts > 1 ? scene.substr(0, scene.rfind('@')) : scene;
+}
+
+std::vector<std::string> objects_of(const Benchmark& benchmark, const std::vector<Scene>& scenes) {
+  std::vector<std::string> objects;
+  for (const Scene& scene : scenes) {
+    std::string object = object_of(benchmark, scene.name);
+    if (std::find(objects.begin(), objects.end(), object) == objects.end()) objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
+BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
+                               const ComparedRuns& compared, std::size_t planned) {
+  const std::vector<std::string> strategies = strategies_in(compared);
+  const std::set<SceneAndSeed> shared = shared_by(strategies, compared);
+  BenchmarkTable table{{}, planned, compared.runs.size(), shared.size()};
+  if (benchmark.rule && !shared.empty()) {
+    const std::vector<MeasuredRun> runs = runs_in(shared, measured);
+    for (const std::string& strategy : strategies) {
+      for (const std::size_t views : told_views(benchmark)) {
+        table.rows.push_back(row_after(benchmark, runs, strategy, views));
+      }
     }
-    for (const std::size_t views : told_views(benchmark)) {
-      BenchmarkRow row;
-      row.method = strategy;
-      row.views = static_cast<double>(views);
-      row.of_visible = over_scenes(measured, strategy, views, &CoverageShares::of_visible);
-      row.of_all = over_scenes(measured, strategy, views, &CoverageShares::of_all);
-      table.push_back(std::move(row));
-    }
+  } else if (!shared.empty()) {
+    const std::vector<CampaignSummary> summaries = summarize(runs_in(shared, compared.runs), compared.budget);
+    for (const std::string& strategy : strategies) table.rows.push_back(row_of_own_scenes(summaries, strategy));
   }
   for (const PublishedFigure& figure : benchmark.published) {
     BenchmarkRow row;
     row.method = figure.method;
     row.views = figure.views;
     row.published = figure;
-    table.push_back(std::move(row));
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
 
-std::vector<std::string> beside_published(const Benchmark& benchmark, const std::vector<BenchmarkRow>& table,
-                                          bool stand_ins) {
-  std::vector<std::string> lines;
-  if (table.empty() || table.front().published) return lines;
-  const std::string& ours = table.front().method;
+std::vector<std::string> beside_published(const Benchmark& benchmark, const BenchmarkTable& table, bool stand_ins) {
+  if (!table.is_complete() || table.rows.empty() || table.rows.front().published) return {};
+  const std::string& ours = table.rows.front().method;
+  std::vector<std::string> short_of;
+  std::vector<std::string> reached;
   for (const PublishedFigure& figure : benchmark.published) {
     if (figure.views <= 1.0) continue;  // the first view is given, not chosen
     const auto at = std::min(static_cast<double>(benchmark.views_in_all), std::floor(figure.views));
-    const auto row = std::find_if(table.begin(), table.end(), [&](const BenchmarkRow& candidate) {
+    const auto row = std::find_if(table.rows.begin(), table.rows.end(), [&](const BenchmarkRow& candidate) {
       return !candidate.published && candidate.method == ours && candidate.views == at;
     });
-    if (row == table.end() || !row->of_all || !row->of_visible) continue;
+    if (row == table.rows.end() || !row->of_all || !row->of_visible || !row->taken) continue;
     const double gap = row->of_all->mean - figure.coverage;
-    std::string line = ours + " after " + fixed(at, 0) + " views: " + fixed(100.0 * row->of_visible->mean, 1) +
-                       " % of what the views can show, " + fixed(100.0 * row->of_all->mean, 1) + " % of all; " +
-                       figure.method + " " + fixed(100.0 * figure.coverage, 1) + " % after " +
-                       fixed(figure.views, figure.views == std::floor(figure.views) ? 0 : 1) + ": ";
+    std::string line = ours + " after " + fixed(at, 0) + " views";
+    if (row->taken->mean < at) line += " (" + fixed(row->taken->mean, 1) + " taken)";
+    line += ": " + fixed(100.0 * row->of_visible->mean, 1) + " % of what the views can show, " +
+            fixed(100.0 * row->of_all->mean, 1) + " % of all; " + figure.method + " " +
+            fixed(100.0 * figure.coverage, 1) + " % after " + views_text(figure.views) + ": ";
     line += gap >= 0.0 ? "not below it" : "short of it by " + fixed(-100.0 * gap, 1) + " points of all";
     if (stand_ins) line += " (other objects)";
-    lines.push_back(std::move(line));
+    (gap >= 0.0 ? reached : short_of).push_back(std::move(line));
   }
-  return lines;
+  short_of.insert(short_of.end(), reached.begin(), reached.end());
+  return short_of;
 }
 
-std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan,
-                           const std::vector<BenchmarkRow>& table) {
-  constexpr std::size_t kColumn{16};
+std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan, const BenchmarkTable& table) {
   std::ostringstream text;
   text << "benchmark " << benchmark.name << ", version " << benchmark.version << ": " << benchmark.text << '\n';
-  text << "objects   " << objects_text(plan) << '\n';
+  text << "objects   " << objects_text(benchmark, plan) << '\n';
   if (plan.stand_ins) {
     text << "STAND-INS: these objects are made by rule and are not those of the publications, so our figures and "
             "theirs cannot be compared;\n          --objects DIR takes the published meshes\n";
   }
+  if (!table.is_complete()) text << incomplete_text(table);
   text << what_counts(benchmark) << "\n\n";
-  const std::size_t width = method_width(table);
-  text << padded_to("method", width) << padded_to("views", 8);
-  if (benchmark.rule) {
-    text << padded_to("of visible, %", kColumn) << padded_to("of all, %", kColumn) << "source\n";
-  } else {
-    text << padded_to("coverage, %", kColumn) << padded_to("path, m", kColumn) << padded_to("motion, s", kColumn)
-         << "source\n";
-  }
-  for (const BenchmarkRow& row : table) {
-    text << padded_to(row.method, width) << padded_to(fixed(row.views, row.views == std::floor(row.views) ? 0 : 1), 8);
-    if (row.published) {
-      text << padded_to("", kColumn) << padded_to(fixed(100.0 * row.published->coverage, 1), kColumn) << "["
-           << source_number(benchmark, row.published->source) << "] " << row.published->object << '\n';
-      continue;
-    }
-    text << padded_to(shown(row.of_visible, 100.0, 1), kColumn);
-    if (benchmark.rule) {
-      text << padded_to(shown(row.of_all, 100.0, 1), kColumn);
-    } else {
-      text << padded_to(shown(row.path_m, 1.0, 2), kColumn) << padded_to(shown(row.motion_s, 1.0, 1), kColumn);
-    }
-    text << "this run\n";
-  }
+  print_rows(text, benchmark, table);
   text << '\n';
   if (!benchmark.not_published.empty()) text << "published: none: " << benchmark.not_published << '\n';
   std::size_t number = 0;
@@ -226,35 +313,38 @@ std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan
   return text.str();
 }
 
-json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan, const std::vector<BenchmarkRow>& table) {
+json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan, const BenchmarkTable& table) {
   json rows = json::array();
-  for (const BenchmarkRow& row : table) rows.push_back(row_json(row));
-  json objects = json::array();
-  for (const Scene& scene : plan.scenes) objects.push_back(scene.name);
+  for (const BenchmarkRow& row : table.rows) rows.push_back(row_json(row));
+  json scenes = json::array();
+  for (const Scene& scene : plan.scenes) scenes.push_back(scene.name);
   return {{"name", benchmark.name},
           {"version", benchmark.version},
           {"text", benchmark.text},
           {"measure", what_counts(benchmark)},
-          {"objects", std::move(objects)},
+          {"objects", objects_of(benchmark, plan.scenes)},
+          {"scenes", std::move(scenes)},
           {"stand_ins", plan.stand_ins},
           {"views_in_all", benchmark.views_in_all},
+          {"runs", {{"planned", table.planned}, {"done", table.done}, {"each_strategy", table.each_strategy}}},
+          {"complete", table.is_complete()},
           {"table", std::move(rows)},
           {"beside_published", beside_published(benchmark, table, plan.stand_ins)},
           {"not_published", benchmark.not_published}};
 }
 
 Status write_benchmark(const std::filesystem::path& folder, const Benchmark& benchmark, const BenchmarkPlan& plan,
-                       const std::vector<BenchmarkRow>& table, const std::vector<MeasuredRun>& measured) {
-  CsvTable rows{{"benchmark", "version", "stand_ins", "method", "views", "of_visible", "of_all", "objects", "path_m",
-                 "motion_s", "published", "year", "source", "object", "differs"}};
+                       const BenchmarkTable& table, const std::vector<MeasuredRun>& measured) {
+  CsvTable rows{{"benchmark", "version", "stand_ins", "complete", "method", "views", "views_taken", "of_visible",
+                 "of_all", "objects", "path_m", "motion_s", "published", "year", "source", "object", "differs"}};
   const auto mean_of = [](const std::optional<MeanEstimate>& estimate) {
     return estimate && estimate->n > 0 ? std::optional{estimate->mean} : std::nullopt;
   };
-  for (const BenchmarkRow& row : table) {
+  for (const BenchmarkRow& row : table.rows) {
     const std::optional<PublishedFigure>& figure = row.published;
     rows.add(benchmark.name).add(static_cast<std::uint64_t>(benchmark.version));
-    rows.add(plan.stand_ins ? "yes" : "no").add(row.method).add(row.views).add(mean_of(row.of_visible));
-    rows.add(mean_of(row.of_all));
+    rows.add(plan.stand_ins ? "yes" : "no").add(table.is_complete() ? "yes" : "no").add(row.method).add(row.views);
+    rows.add(mean_of(row.taken)).add(mean_of(row.of_visible)).add(mean_of(row.of_all));
     rows.add(row.of_visible ? std::optional{static_cast<double>(row.of_visible->n)} : std::nullopt);
     rows.add(mean_of(row.path_m)).add(mean_of(row.motion_s));
     rows.add(figure ? std::optional{figure->coverage} : std::nullopt);

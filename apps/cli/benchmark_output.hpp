@@ -18,39 +18,57 @@ struct MeasuredRun {
   BenchmarkCurve curve;
 };
 
-/// A line of the table: a strategy of ours at a number of views, or a published figure.
+/// A line of the table: a strategy of ours at a number of views, or a published figure. Means are over objects, each
+/// with the mean of its first views, each with the mean of its seeds: starts and seeds of an object are not
+/// independent samples of objects.
 struct BenchmarkRow {
   std::string method;
-  double views{0.0};                       ///< the first one included
-  std::optional<MeanEstimate> of_visible;  ///< over scenes, each with the mean of its runs
+  double views{0.0};                  ///< the first one included
+  std::optional<MeanEstimate> taken;  ///< of these views; a run ends before where no view gains anything
+  std::optional<MeanEstimate> of_visible;
   std::optional<MeanEstimate> of_all;
   std::optional<MeanEstimate> path_m;    ///< for protocols with scenes of their own
   std::optional<MeanEstimate> motion_s;  ///< as path_m
   std::optional<PublishedFigure> published;
 };
 
-/// Returns our strategies, at each number of views for which there is a published figure and at the protocol's own,
-/// then the published figures.
-[[nodiscard]] std::vector<BenchmarkRow> benchmark_table(const Benchmark& benchmark,
-                                                        const std::vector<MeasuredRun>& measured,
-                                                        const ComparedRuns& compared);
+struct BenchmarkTable {
+  std::vector<BenchmarkRow> rows;
+  std::size_t planned{0};        ///< runs of the benchmark
+  std::size_t done{0};           ///< of these
+  std::size_t each_strategy{0};  ///< runs of each strategy that the rows are over
 
-/// Says how the first strategy compares with each published figure at its number of views: reached, or short of it.
-/// The first view is given and not compared.
-[[nodiscard]] std::vector<std::string> beside_published(const Benchmark& benchmark,
-                                                        const std::vector<BenchmarkRow>& table, bool stand_ins);
+  [[nodiscard]] bool is_complete() const { return done == planned; }
+};
+
+/// Returns the object of a scene of the protocol: "figure" of "figure@12".
+[[nodiscard]] std::string object_of(const Benchmark& benchmark, const std::string& scene);
+/// Returns the objects of the scenes, each once, in their order.
+[[nodiscard]] std::vector<std::string> objects_of(const Benchmark& benchmark, const std::vector<Scene>& scenes);
+
+/// Returns our strategies, at each number of views for which there is a published figure and at the protocol's own,
+/// then the published figures. The rows of strategies are over the runs (scene and seed) that all of them have, so that
+/// those of an interrupted benchmark are about the same objects. A strategy without any run has no rows.
+/// @param planned  runs of the benchmark
+[[nodiscard]] BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
+                                             const ComparedRuns& compared, std::size_t planned);
+
+/// Says how the first strategy compares with each published figure at its number of views: short of it, which comes
+/// first, or reached. The first view is given and not compared. Nothing is said before all runs are done.
+[[nodiscard]] std::vector<std::string> beside_published(const Benchmark& benchmark, const BenchmarkTable& table,
+                                                        bool stand_ins);
 
 /// The table and what goes with it, for people.
 [[nodiscard]] std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan,
-                                         const std::vector<BenchmarkRow>& table);
+                                         const BenchmarkTable& table);
 
-/// {name, version, objects, stand_ins, table: […], beside_published: […]}
+/// {name, version, objects, scenes, stand_ins, runs: {…}, table: […], beside_published: […], …}
 [[nodiscard]] nlohmann::json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan,
-                                            const std::vector<BenchmarkRow>& table);
+                                            const BenchmarkTable& table);
 
 /// Writes table.csv, and curves.csv for protocols with a rule. io_failure.
 [[nodiscard]] Status write_benchmark(const std::filesystem::path& folder, const Benchmark& benchmark,
-                                     const BenchmarkPlan& plan, const std::vector<BenchmarkRow>& table,
+                                     const BenchmarkPlan& plan, const BenchmarkTable& table,
                                      const std::vector<MeasuredRun>& measured);
 
 /// The protocols, a line each.

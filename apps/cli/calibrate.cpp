@@ -206,6 +206,27 @@ std::string calibration_text(const HandEyeInput& input, const HandEyeResult& fou
   return out.str();
 }
 
+/// Says first where the cell's file is none: its keys are not what is missing then.
+Status check_cell_file(const std::string& cell) {
+  std::error_code ignored;
+  const std::filesystem::path path{cell};
+  if (std::filesystem::is_directory(path, ignored)) {
+    return Error{Errc::invalid_argument, "is a folder; name the cell's file in it, such as cell.yaml", cell};
+  }
+  const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
+  if (is_yaml && !std::filesystem::exists(path, ignored)) return Error{Errc::not_found, "no such file", cell};
+  return {};
+}
+
+/// There is no arm: the file is not there, or it lacks the key.
+Error no_arm(const std::string& cell) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(cell, ignored)) {
+    return {Errc::not_found, "no such file; name a cell's YAML file, whose key arm says what carries the camera", cell};
+  }
+  return {Errc::invalid_argument, "no arm carries the camera; add the key arm", cell};
+}
+
 class Calibrate final : public Command {
  public:
   [[nodiscard]] CommandInfo info() const override {
@@ -235,9 +256,10 @@ class Calibrate final : public Command {
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     const Executor& executor = context.executor();
+    SACCADE_CHECK(check_cell_file(cell_.scene));
     if (cell_.cell_problem) return *cell_.cell_problem;
     SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(cell_, &context.bar()));
-    if (!arm) return Error{Errc::invalid_argument, "no arm carries the camera; add the key arm", cell_.scene};
+    if (!arm) return no_arm(cell_.scene);
     SACCADE_TRY(const ExploreSetup subject, open_case(cell_, executor));
     if (subject.scene.scan.empty()) {
       return Error{Errc::invalid_argument, "there are no poses to look from; add some under the key scan", cell_.scene};

@@ -108,7 +108,7 @@ int run(int argc, char** argv, CLI::App& program, Planners planners) {
   if (!std::cout) return fail(program, ExitStatus::bad_input, "standard output: cannot write the result");
   if (status) return *status;
   if (status.error().code == Errc::cancelled && interrupted()) {
-    fail(program, ExitStatus::done, "interrupted; nothing was written");
+    fail(program, ExitStatus::done, "interrupted; no result was written");
     return interrupt_status();
   }
   return fail(program, exit_status_of(status.error().code), status.error().to_string());

@@ -96,6 +96,13 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
   return {seeds.begin(), seeds.end()};
 }
 
+/// The --seed of the program that a command belongs to; null where there is none.
+const CLI::Option* program_seed_of(const CLI::App& command) {
+  const CLI::App* program = &command;
+  while (program->get_parent() != nullptr) program = program->get_parent();
+  return program->get_option_no_throw("--seed");
+}
+
 }  // namespace
 
 std::vector<std::string> list_parts(const std::string& option, const std::string& text) {
@@ -137,9 +144,14 @@ void add_campaign_options(CLI::App& command, CompareOptions& options) {
             "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
       ->check(CLI::Range(1, 256));
   add_machine_options(command, options.machines);
+  options.program_seed = program_seed_of(command);
 }
 
 void check_campaign_options(CompareOptions& options) {
+  if (options.program_seed != nullptr && options.program_seed->count() > 0) {
+    usage_error("--seed", "the runs of a campaign have the seeds of --seeds, such as --seeds " +
+                              options.program_seed->results().front());
+  }
   options.seeds = parse_seeds(options.seed_list);
   check_machine_options(options.machines);
 }

@@ -33,6 +33,7 @@ struct CompareOptions {
   /// The other strategies get as many views as sphere took with the same scene, noise and seed.
   bool equal_views{false};
   MachineOptions machines;
+  const CLI::Option* program_seed{nullptr};  ///< --seed of the program, which is not for campaigns; null: there is none
 
   // As they were given.
   std::string scene_list;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <utility>
 
 #include "options.hpp"
 #include "saccade/io/files/file_io.hpp"
@@ -30,6 +31,11 @@ std::vector<std::size_t> part_numbers(const std::vector<PlannedRun>& plan, bool 
     numbers.push_back(i == 0 ? 0 : numbers.back() + (goes_on ? 0 : 1));
   }
   return numbers;
+}
+
+/// The first part of a slice, and the first after it.
+std::pair<std::size_t, std::size_t> part_range(const Slice& slice, std::size_t parts) {
+  return {slice.index * parts / slice.count, (slice.index + 1) * parts / slice.count};
 }
 
 /// "2-of-10".
@@ -66,15 +72,23 @@ bool is_locked(const fs::path& folder) {
 
 }  // namespace
 
-std::size_t count_parts(const std::vector<PlannedRun>& plan, bool equal_views) {
-  return plan.empty() ? 0 : part_numbers(plan, equal_views).back() + 1;
+SliceCounter::SliceCounter(const std::vector<PlannedRun>& plan, bool equal_views) : upto_(1) {
+  const std::vector<std::size_t> numbers = part_numbers(plan, equal_views);
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    if (numbers[i] + 2 > upto_.size()) upto_.push_back(upto_.back());
+    ++upto_.back().planned;
+    upto_.back().done += plan[i].found ? 1 : 0;
+  }
+}
+
+SliceRuns SliceCounter::of(const Slice& slice) const {
+  const auto [first, last] = part_range(slice, parts());
+  return {upto_[last].planned - upto_[first].planned, upto_[last].done - upto_[first].done};
 }
 
 std::vector<PlannedRun> runs_of(const Slice& slice, const std::vector<PlannedRun>& plan, bool equal_views) {
   const std::vector<std::size_t> numbers = part_numbers(plan, equal_views);
-  const std::size_t parts = plan.empty() ? 0 : numbers.back() + 1;
-  const std::size_t first = slice.index * parts / slice.count;
-  const std::size_t last = (slice.index + 1) * parts / slice.count;
+  const auto [first, last] = part_range(slice, plan.empty() ? 0 : numbers.back() + 1);
   std::vector<PlannedRun> runs;
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (numbers[i] >= first && numbers[i] < last) runs.push_back(plan[i]);
@@ -117,17 +131,30 @@ Result<ShardRecord> shard_record_from_json(const json& value) {
   }
 }
 
-Result<ShardRecord> read_shard_record(const fs::path& folder, const Slice& slice) {
+ShardRecord read_shard_record(const fs::path& folder, const Slice& slice) {
   const fs::path file = folder / kShardRecord;
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return ShardRecord{.slice = slice};
-  SACCADE_TRY(const json value, read_json(file));
-  Result<ShardRecord> record = shard_record_from_json(value);
-  if (!record) return in_file(record.error(), file);
+  const Result<json> value = read_json(file);
+  Result<ShardRecord> record = value ? in_file(shard_record_from_json(*value), file) : value.error();
+  if (!record) {
+    return ShardRecord{.slice = slice,
+                       .state = ShardState::unknown,
+                       .error = record.error().to_string() + "; the next try of the slice writes it anew"};
+  }
+  record->slice = slice;
   if (record->state == ShardState::running && record->machine == machine_name() && !is_locked(folder)) {
     record->state = ShardState::killed;
   }
-  return record;
+  return *record;
+}
+
+std::vector<ShardRecord> shard_records(const fs::path& out) {
+  std::vector<ShardRecord> records;
+  for (const fs::path& folder : folders_in(out / kShardsFolder)) {
+    if (const auto slice = slice_of(folder.filename().string())) records.push_back(read_shard_record(folder, *slice));
+  }
+  return records;
 }
 
 Result<std::vector<fs::path>> campaign_files(const fs::path& folder) {
@@ -151,6 +178,7 @@ std::vector<fs::path> shard_files(const fs::path& out) {
 
 Result<std::vector<SliceProgress>> progress_of(const Comparison& comparison, const std::vector<PlannedRun>& plan) {
   const CompareOptions& options = comparison.options();
+  const SliceCounter counter{plan, options.equal_views};
   std::set<std::size_t> counts;
   for (const fs::path& shard : folders_in(options.out / kShardsFolder)) {
     if (const auto slice = slice_of(shard.filename().string())) counts.insert(slice->count);
@@ -159,13 +187,10 @@ Result<std::vector<SliceProgress>> progress_of(const Comparison& comparison, con
   for (const std::size_t count : counts) {
     for (std::size_t index = 0; index < count; ++index) {
       const Slice slice{index, count};
-      SliceProgress progress;
-      SACCADE_TRY(progress.record, read_shard_record(shard_folder(options.out, slice), slice));
-      const std::vector<PlannedRun> runs = runs_of(slice, plan, options.equal_views);
-      progress.planned = runs.size();
-      progress.done = static_cast<std::size_t>(
-          std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; }));
-      slices.push_back(std::move(progress));
+      const SliceRuns runs = counter.of(slice);
+      slices.push_back({.record = read_shard_record(shard_folder(options.out, slice), slice),
+                        .planned = runs.planned,
+                        .done = runs.done});
     }
   }
   return slices;

@@ -21,20 +21,37 @@ constexpr const char* kShardRecord{"shard.json"};
 /// one waits for another are not parted. Depends on nothing but the plan's length and order.
 [[nodiscard]] std::vector<PlannedRun> runs_of(const Slice& slice, const std::vector<PlannedRun>& plan,
                                               bool equal_views);
-/// Number of parts of a plan, at most, that are not empty.
-[[nodiscard]] std::size_t count_parts(const std::vector<PlannedRun>& plan, bool equal_views);
+
+/// Runs of a slice, and how many of them are done.
+struct SliceRuns {
+  std::size_t planned{0};
+  std::size_t done{0};
+};
+
+/// Counts the runs of any slice of a plan; each question takes constant time.
+class SliceCounter {
+ public:
+  SliceCounter(const std::vector<PlannedRun>& plan, bool equal_views);
+  /// Number of slices, at most, that are not empty.
+  [[nodiscard]] std::size_t parts() const { return upto_.size() - 1; }
+  [[nodiscard]] SliceRuns of(const Slice& slice) const;
+
+ private:
+  std::vector<SliceRuns> upto_;  ///< of the first k parts, for k = 0, 1, …
+};
 
 /// DIR/shards/2-of-10.
 [[nodiscard]] std::filesystem::path shard_folder(const std::filesystem::path& out, const Slice& slice);
 
 /// How a slice came to its end, or that it goes on.
-enum class ShardState : std::uint8_t { waiting, running, done, failed, interrupted, killed };
+enum class ShardState : std::uint8_t { waiting, running, done, failed, interrupted, killed, unknown };
 inline constexpr auto kShardStateNames = make_names<ShardState>({{ShardState::waiting, "waiting"},
                                                                  {ShardState::running, "running"},
                                                                  {ShardState::done, "done"},
                                                                  {ShardState::failed, "failed"},
                                                                  {ShardState::interrupted, "interrupted"},
-                                                                 {ShardState::killed, "killed"}});
+                                                                 {ShardState::killed, "killed"},
+                                                                 {ShardState::unknown, "unknown"}});
 
 /// Report of the task of a slice, in shard.json beside its campaign file.
 struct ShardRecord {
@@ -45,14 +62,16 @@ struct ShardRecord {
   std::string job{};    ///< "12_3": job and task of Slurm
   std::string began{};  ///< UTC, as 2024-06-30T12:00:00Z; of the last try
   std::string ended{};
-  std::string error{};  ///< why it failed
+  std::string error{};  ///< why it failed; unknown: why its record cannot be read
 };
 [[nodiscard]] std::string machine_name();
 [[nodiscard]] nlohmann::json to_json(const ShardRecord& record);
 [[nodiscard]] Result<ShardRecord> shard_record_from_json(const nlohmann::json& json);
 /// Reads the record of a shard's folder: waiting where there is none; killed where it says that it runs on this
-/// machine, and none does. Errors: those of read_json and shard_record_from_json.
-[[nodiscard]] Result<ShardRecord> read_shard_record(const std::filesystem::path& folder, const Slice& slice);
+/// machine, and none does; unknown where the record cannot be read, which the next try writes anew.
+[[nodiscard]] ShardRecord read_shard_record(const std::filesystem::path& folder, const Slice& slice);
+/// Returns the records of the slices that have a folder in DIR/shards.
+[[nodiscard]] std::vector<ShardRecord> shard_records(const std::filesystem::path& out);
 
 /// A slice with what is done of it.
 struct SliceProgress {

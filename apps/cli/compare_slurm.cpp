@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <sstream>
 
 #include "compare_shards.hpp"
 #include "saccade/core/fnv1a.hpp"
@@ -21,14 +22,18 @@ namespace fs = std::filesystem;
 
 struct ToolOutput {
   int status{-1};
-  std::string text;  ///< from both streams
+  std::string text;    ///< from its standard output
+  std::string errors;  ///< from its standard error
 };
 
 /// Runs a program with these arguments and waits for it.
 Result<ToolOutput> run_tool(const std::vector<std::string>& words) {
-  std::string line;
+  // The shell passes the standard output on as it comes; behind it, after a NUL, it prints what was on standard error.
+  // Two variables would change what sbatch does: the merge must not become an array, and nothing waits for a job.
+  std::string line{"unset SBATCH_ARRAY_INX SBATCH_WAIT; exec 3>&1; errors=$("};
   for (const std::string& word : words) line += shell_quoted(word) + ' ';
-  FILE* stream = ::popen((line + "2>&1").c_str(), "re");
+  line += "2>&1 >&3 3>&-); status=$?; printf '\\000%s' \"$errors\"; exit $status";
+  FILE* stream = ::popen(line.c_str(), "re");
   if (stream == nullptr) return Error{Errc::unavailable, "cannot be started", words.front()};
   ToolOutput output;
   std::array<char, 4096> part{};
@@ -36,12 +41,22 @@ Result<ToolOutput> run_tool(const std::vector<std::string>& words) {
     output.text.append(part.data(), n);
   const int status = ::pclose(stream);
   output.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  while (!output.text.empty() && output.text.back() == '\n') output.text.pop_back();
+  if (const std::size_t end = output.text.find('\0'); end != std::string::npos) {
+    output.errors = output.text.substr(end + 1);
+    output.text.resize(end);
+  }
   return output;
 }
 
-/// Runs a program of Slurm. unavailable where there is none, io_failure where it fails.
-Result<std::string> run_slurm(const std::vector<std::string>& words) {
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+/// Runs a program of Slurm, and returns the lines of its standard output. unavailable where there is none, io_failure
+/// where it fails.
+Result<std::vector<std::string>> run_slurm(const std::vector<std::string>& words) {
   constexpr int kNotFound{127};
   SACCADE_TRY(const ToolOutput output, run_tool(words));
   if (output.status == kNotFound) {
@@ -49,11 +64,20 @@ Result<std::string> run_slurm(const std::vector<std::string>& words) {
                  words.front()};
   }
   if (output.status != 0) {
-    std::string text = output.text;
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return Error{Errc::io_failure, "failed: " + text, words.front()};
+    return Error{Errc::io_failure, "failed: " + one_line(output.errors.empty() ? output.text : output.errors),
+                 words.front()};
   }
-  return output.text;
+  std::vector<std::string> lines;
+  std::istringstream text{output.text};
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+/// "123" of "123" and of "123;cluster"; nullopt for any other line.
+std::optional<std::string> job_number(const std::string& line) {
+  const std::size_t end = line.find_first_not_of("0123456789");
+  if (end == 0 || line.empty() || (end != std::string::npos && line[end] != ';')) return std::nullopt;
+  return line.substr(0, end);
 }
 
 Result<fs::path> own_program() {
@@ -63,19 +87,42 @@ Result<fs::path> own_program() {
   return program;
 }
 
-/// One name for each campaign's folder.
+/// One name for each campaign's folder, however it is spelled.
 std::string job_name(const fs::path& out) {
+  std::error_code code;
+  const fs::path real = fs::weakly_canonical(out, code);
   Fnv1a hash;
-  for (const char c : out.string()) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+  for (const char c : (code ? out : real).string()) hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
   return "saccade-" + hash.text().substr(0, 8);
 }
 
-/// Lines that both scripts begin with.
-std::string head(const SliceJob& job) {
-  std::string text{"#!/bin/bash\n#SBATCH --job-name=" + job.name + '\n'};
-  if (!job.options.partition.empty()) text += "#SBATCH --partition=" + job.options.partition + '\n';
-  if (!job.options.time.empty()) text += "#SBATCH --time=" + job.options.time + '\n';
-  return text + "#SBATCH --output=/dev/null\n#SBATCH --requeue\n";
+/// Options of sbatch for both jobs. They stand in the script, and are given to sbatch as well, since there they count
+/// more than its environment.
+std::vector<std::string> options_of_both(const SliceJob& job) {
+  std::vector<std::string> options{"--job-name=" + job.name};
+  if (!job.options.partition.empty()) options.push_back("--partition=" + job.options.partition);
+  if (!job.options.time.empty()) options.push_back("--time=" + job.options.time);
+  options.insert(options.end(), {"--output=/dev/null", "--requeue"});
+  return options;
+}
+
+std::vector<std::string> options_of_array(const SliceJob& job) {
+  std::vector<std::string> options = options_of_both(job);
+  options.push_back("--array=" + ranges_of(job.wanted));
+  options.push_back("--cpus-per-task=" + std::to_string(job.options.cpus));
+  return options;
+}
+
+std::vector<std::string> options_of_merge(const SliceJob& job) {
+  std::vector<std::string> options = options_of_both(job);
+  options.emplace_back("--cpus-per-task=1");
+  return options;
+}
+
+std::string head(const std::vector<std::string>& options) {
+  std::string text{"#!/bin/bash\n"};
+  for (const std::string& option : options) text += "#SBATCH " + option + '\n';
+  return text;
 }
 
 std::string command_of(const SliceJob& job, std::size_t threads) {
@@ -84,19 +131,18 @@ std::string command_of(const SliceJob& job, std::size_t threads) {
   return text + " --threads " + std::to_string(threads) + " --out " + shell_quoted(job.out.string());
 }
 
-std::string begin_in(const SliceJob& job) {
-  return "set -e\ncd " + shell_quoted(job.work_folder.string()) + "\nmkdir -p " +
-         shell_quoted((job.out / kLogsFolder).string()) + '\n';
+/// From its first line on the script writes to its log, so that a folder that the node cannot reach leaves a trace.
+std::string begin_in(const SliceJob& job, const std::string& log) {
+  return "set -e\nmkdir -p " + shell_quoted((job.out / kLogsFolder).string()) + "\nexec >>" + log + " 2>&1\ncd " +
+         shell_quoted(job.work_folder.string()) + '\n';
 }
 
-/// Slices with a run that is not done, and how many such runs there are.
-std::vector<std::size_t> slices_to_do(const std::vector<PlannedRun>& plan, std::size_t slices, bool equal_views) {
+/// Slices with a run that is not done.
+std::vector<std::size_t> slices_to_do(const SliceCounter& counter, std::size_t slices) {
   std::vector<std::size_t> wanted;
   for (std::size_t index = 0; index < slices; ++index) {
-    const std::vector<PlannedRun> runs = runs_of({index, slices}, plan, equal_views);
-    if (std::any_of(runs.begin(), runs.end(), [](const PlannedRun& run) { return !run.found; })) {
-      wanted.push_back(index);
-    }
+    const SliceRuns runs = counter.of({index, slices});
+    if (runs.done < runs.planned) wanted.push_back(index);
   }
   return wanted;
 }
@@ -110,29 +156,78 @@ Result<SliceJob> job_of(const Context& context, const Comparison& comparison, co
   job.work_folder = fs::current_path();
   job.name = job_name(job.out);
   job.options = options.machines.job;
-  const std::size_t parts = count_parts(plan, options.equal_views);
-  job.slices = job.options.tasks == 0 ? std::clamp<std::size_t>(parts, 1, kMostTasks) : job.options.tasks;
-  job.wanted = slices_to_do(plan, job.slices, options.equal_views);
+  const SliceCounter counter{plan, options.equal_views};
+  job.slices = job.options.tasks == 0 ? std::clamp<std::size_t>(counter.parts(), 1, kMostTasks) : job.options.tasks;
+  job.wanted = slices_to_do(counter, job.slices);
   return job;
 }
 
 /// Refuses a campaign of which a job is queued or running.
 Status check_queue(const std::string& name) {
-  SACCADE_TRY(const std::string queued, run_slurm({"squeue", "--me", "--noheader", "--name", name, "--format", "%A"}));
-  if (queued.empty()) return {};
-  const std::string job = queued.substr(0, queued.find('\n'));
-  return Error{
-      Errc::invalid_argument,
-      "job " + job + " of this campaign is still queued or running; wait for it, or end it with scancel " + job,
-      {}};
+  SACCADE_TRY(const std::vector<std::string> queued,
+              run_slurm({"squeue", "--me", "--noheader", "--name", name, "--format", "%A"}));
+  for (const std::string& line : queued) {
+    const auto job = job_number(line.substr(0, line.find_last_not_of(' ') + 1));
+    if (!job) continue;
+    return Error{
+        Errc::invalid_argument,
+        "job " + *job + " of this campaign is still queued or running; wait for it, or end it with scancel " + *job,
+        {}};
+  }
+  return {};
 }
 
-Result<std::string> submit(const fs::path& script, const std::vector<std::string>& more) {
+/// @param options  of sbatch
+/// @return the job's number
+Result<std::string> submit(const fs::path& script, const std::vector<std::string>& options) {
   std::vector<std::string> words{"sbatch", "--parsable"};
-  words.insert(words.end(), more.begin(), more.end());
+  words.insert(words.end(), options.begin(), options.end());
   words.push_back(script.string());
-  SACCADE_TRY(const std::string answer, run_slurm(words));
-  return answer.substr(answer.rfind('\n') + 1).substr(0, answer.find(';'));
+  SACCADE_TRY(const std::vector<std::string> answer, run_slurm(words));
+  for (const std::string& line : answer) {
+    if (const auto job = job_number(line)) return *job;
+  }
+  return Error{Errc::io_failure,
+               "gave no number of a job (" + (answer.empty() ? "it printed nothing" : '"' + answer.front() + '"') +
+                   "); squeue --me tells whether there is one",
+               words.front()};
+}
+
+struct SubmittedJobs {
+  std::string array;
+  std::string merge;
+};
+
+/// Writes both scripts into DIR/logs, and submits them.
+Result<SubmittedJobs> submit_jobs(const SliceJob& job) {
+  std::error_code code;
+  fs::create_directories(job.out / kLogsFolder, code);
+  const fs::path array = job.out / kLogsFolder / "array.sh";
+  const fs::path merge = job.out / kLogsFolder / "merge.sh";
+  SACCADE_CHECK(write_file_atomically(array, array_script(job)));
+  SACCADE_CHECK(write_file_atomically(merge, merge_script(job)));
+  Result<std::string> array_job = submit(array, options_of_array(job));
+  if (!array_job) {
+    Error error = array_job.error();
+    if (error.message.find("Invalid job array specification") != std::string::npos) {
+      error.message +=
+          "; the cluster takes no task number from its MaxArraySize on (scontrol show config): pass --tasks"
+          " with at most that number";
+    }
+    return error;
+  }
+  std::vector<std::string> options = options_of_merge(job);
+  options.push_back("--dependency=afterany:" + *array_job);
+  Result<std::string> merge_job = submit(merge, options);
+  if (!merge_job) {
+    Error error = merge_job.error();
+    error.message += "; the array is queued as job " + *array_job +
+                     ", but not the merge after it: give the same command with --merge instead of --slurm when the"
+                     " array has ended, or end it with scancel " +
+                     *array_job;
+    return error;
+  }
+  return SubmittedJobs{*array_job, *merge_job};
 }
 
 std::string counted(std::size_t count, const std::string& one) {
@@ -173,14 +268,13 @@ std::vector<std::string> arguments_of_comparison(const std::vector<std::string>&
 
 std::string array_script(const SliceJob& job) {
   const std::string log = shell_quoted((job.out / kLogsFolder / "slice-").string()) + "\"$SLURM_ARRAY_TASK_ID\".log";
-  return head(job) + "#SBATCH --array=" + ranges_of(job.wanted) +
-         "\n#SBATCH --cpus-per-task=" + std::to_string(job.options.cpus) + '\n' + begin_in(job) + "exec " +
-         command_of(job, job.options.cpus) + " --shard auto/" + std::to_string(job.slices) + " >>" + log + " 2>&1\n";
+  return head(options_of_array(job)) + begin_in(job, log) + "exec " + command_of(job, job.options.cpus) +
+         " --shard auto/" + std::to_string(job.slices) + " </dev/null\n";
 }
 
 std::string merge_script(const SliceJob& job) {
-  return head(job) + begin_in(job) + "exec " + command_of(job, 1) + " --merge >>" +
-         shell_quoted((job.out / kLogsFolder / "merge.log").string()) + " 2>&1\n";
+  return head(options_of_merge(job)) + begin_in(job, shell_quoted((job.out / kLogsFolder / "merge.log").string())) +
+         "exec " + command_of(job, 1) + " --merge\n";
 }
 
 Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
@@ -197,8 +291,9 @@ Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
   const fs::path out = fs::absolute(options.out).lexically_normal();
   SACCADE_CHECK(check_queue(job_name(out)));
   SACCADE_TRY(const Campaign campaign, Campaign::open(options.out / kCampaignFile));
-  SACCADE_TRY(const CampaignMerge merged,
+  SACCADE_TRY(const ShardMerge merged,
               merge_shards(comparison, shards, [&campaign]() -> Result<const Campaign*> { return &campaign; }));
+  if (const std::string left_out = left_out_text(merged); !left_out.empty()) context.bar().note(left_out);
   CampaignIndex found;
   SACCADE_CHECK(found.add(campaign));
   const std::vector<PlannedRun> plan = comparison.plan(found);
@@ -211,19 +306,12 @@ Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
                         {"of", job.slices}};
   if (job.wanted.empty())
     return Outcome{.result = std::move(result), .text = "all runs are done; nothing was submitted\n"};
-  std::error_code code;
-  fs::create_directories(options.out / kLogsFolder, code);
-  const fs::path array = options.out / kLogsFolder / "array.sh";
-  const fs::path merge = options.out / kLogsFolder / "merge.sh";
-  SACCADE_CHECK(write_file_atomically(array, array_script(job)));
-  SACCADE_CHECK(write_file_atomically(merge, merge_script(job)));
-  SACCADE_TRY(const std::string array_job, submit(array, {}));
-  SACCADE_TRY(const std::string merge_job, submit(merge, {"--dependency=afterany:" + array_job}));
-  result["array_job"] = array_job;
-  result["merge_job"] = merge_job;
+  SACCADE_TRY(const SubmittedJobs jobs, submit_jobs(job));
+  result["array_job"] = jobs.array;
+  result["merge_job"] = jobs.merge;
   return Outcome{.result = std::move(result),
-                 .text = "array     job " + array_job + ": " + counted(missing, "run") + " in " +
-                         counted(job.wanted.size(), "slice") + "\nmerge     job " + merge_job +
+                 .text = "array     job " + jobs.array + ": " + counted(missing, "run") + " in " +
+                         counted(job.wanted.size(), "slice") + "\nmerge     job " + jobs.merge +
                          ", when it has ended\nlogs      " + (options.out / kLogsFolder).string() + '\n'};
 }
 

@@ -7,6 +7,7 @@
 #include "filter.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/depth_io.hpp"
 #include "saccade/report/depth_picture.hpp"
 #include "saccade/sensor/mask.hpp"
@@ -20,47 +21,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kReportFileName{"report.html"};
 constexpr std::string_view kPictureFolder{"pictures"};
 
-struct InputFrame {
-  fs::path file;
-  bool from_folder{false};
-};
-
-constexpr std::array<std::string_view, 6> kDepthSuffixes{".png", ".pgm", ".tif", ".tiff", ".npy", ".exr"};
-
 /// Filtered frames are PNG files, whatever they were before.
 fs::path result_name(const fs::path& file) { return file.filename().replace_extension(".png"); }
-
-/// The depth images of a folder, by name.
-Result<std::vector<InputFrame>> frames_in(const fs::path& folder) {
-  std::error_code code;
-  std::error_code ignored;
-  std::vector<InputFrame> frames;
-  for (const fs::directory_entry& entry : fs::directory_iterator{folder, code}) {
-    const std::string suffix = entry.path().extension().string();
-    const bool is_depth = std::find(kDepthSuffixes.begin(), kDepthSuffixes.end(), suffix) != kDepthSuffixes.end();
-    if (is_depth && !fs::is_directory(entry.path(), ignored)) frames.push_back({entry.path(), true});
-  }
-  if (code) return Error{Errc::io_failure, "cannot be listed: " + code.message(), folder.string()};
-  if (frames.empty())
-    return Error{Errc::not_found, "there are no depth images in this folder: no PNG, PGM, TIFF, NPY or EXR",
-                 folder.string()};
-  std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.file < b.file; });
-  return frames;
-}
-
-Result<std::vector<InputFrame>> input_frames(const FilterOptions& options) {
-  std::error_code ignored;
-  std::vector<InputFrame> frames;
-  for (const fs::path& path : options.frames) {
-    if (!fs::is_directory(path, ignored)) {
-      frames.push_back({path, false});
-      continue;
-    }
-    SACCADE_TRY(const std::vector<InputFrame> found, frames_in(path));
-    frames.insert(frames.end(), found.begin(), found.end());
-  }
-  return frames;
-}
 
 /// Filtered frames keep their names: so no two may have the same one, and none may stand in the folder of the results.
 Status check_names(const std::vector<InputFrame>& frames, const fs::path& out) {
@@ -84,8 +46,8 @@ Status check_names(const std::vector<InputFrame>& frames, const fs::path& out) {
 }
 
 /// The camera of a frame: with --intrinsics and without a preset, its size is the image's.
-PinholeCamera camera_of(const FilterOptions& options, const Image16& samples) {
-  PinholeCamera camera = options.camera;
+PinholeCamera camera_of(const FilterOptions& options, const InputFrame& input, const Image16& samples) {
+  PinholeCamera camera = input.camera ? options.camera_options.camera(*input.camera) : options.camera;
   if (options.camera_options.intrinsics && !options.camera_options.preset) {
     camera.width = samples.width();
     camera.height = samples.height();
@@ -107,10 +69,11 @@ Result<Image16> read_samples(const fs::path& file, const FilterOptions& options)
   return encode_depth(depth, options.encoding);
 }
 
-Result<DepthFrame> read_frame(const fs::path& file, const FilterOptions& options) {
+Result<DepthFrame> read_frame(const InputFrame& input, const FilterOptions& options) {
+  const fs::path& file = input.file;
   SACCADE_TRY(Image16 samples, read_samples(file, options));
   DepthFrame frame{std::move(samples), {}, {}};
-  frame.camera = camera_of(options, frame.samples);
+  frame.camera = camera_of(options, input, frame.samples);
   if (frame.samples.width() != frame.camera.width || frame.samples.height() != frame.camera.height) {
     return Error{Errc::size_mismatch,
                  "has " + std::to_string(frame.samples.width()) + "x" + std::to_string(frame.samples.height()) +
@@ -160,9 +123,10 @@ Status write_picture(const RunFolder& out, const fs::path& name, const DepthFram
   return write_png(folder / name, filter_picture(frame.depth, filtered, name.string()));
 }
 
-Result<FilteredFrame> filter_frame(const fs::path& file, const FilterOptions& options, const RunFolder& out,
+Result<FilteredFrame> filter_frame(const InputFrame& input, const FilterOptions& options, const RunFolder& out,
                                    const Executor& executor, bool with_picture) {
-  SACCADE_TRY(DepthFrame frame, read_frame(file, options));
+  const fs::path& file = input.file;
+  SACCADE_TRY(DepthFrame frame, read_frame(input, options));
   auto filter = DepthFilter::create(frame.camera, options.filter);
   if (!filter) return in_file(filter.error(), file);
   const Stopwatch watch;
@@ -180,13 +144,13 @@ bool is_left_out(const InputFrame& frame, const Error& error) {
   return frame.from_folder && error.code != Errc::io_failure;
 }
 
-Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const FilterOptions& options,
-                                const RunFolder& out, const Executor& executor, ProgressBar& bar) {
-  FilterResult result;
+/// Adds to the result what was done, also where it fails.
+Status filter_all(const std::vector<InputFrame>& frames, const FilterOptions& options, const RunFolder& out,
+                  const Executor& executor, ProgressBar& bar, FilterResult& result) {
   for (std::size_t i = 0; i < frames.size() && !interrupted(); ++i) {
     bar.update("filtering", i, frames.size());
     const bool with_picture = options.write_pictures && result.frames.size() < options.pictures;
-    auto filtered = filter_frame(frames[i].file, options, out, executor, with_picture);
+    auto filtered = filter_frame(frames[i], options, out, executor, with_picture);
     if (filtered) {
       result.frames.push_back(std::move(*filtered));
     } else if (is_left_out(frames[i], filtered.error())) {
@@ -196,22 +160,42 @@ Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const Fil
       return filtered.error();
     }
   }
-  return result;
+  return {};
+}
+
+/// Samples per metre are those of the folders, unless an option gives them.
+Result<DepthEncoding> common_encoding(const std::vector<InputFrame>& frames, const FilterOptions& options) {
+  if (options.depth_scale || frames.empty()) return options.encoding;
+  const DepthEncoding first = frames.front().encoding.value_or(options.encoding);
+  for (const InputFrame& frame : frames) {
+    if (frame.encoding.value_or(options.encoding) == first) continue;
+    return Error{Errc::invalid_argument,
+                 "its depth samples have another scale than those of the frames before; filter them into two folders",
+                 frame.file.string()};
+  }
+  return first;
 }
 
 /// Removes the files of an earlier run from the folder, as its filter.json lists them.
 Status remove_earlier_frames(const RunFolder& out) {
   constexpr std::uintmax_t kMostBytes{std::uintmax_t{256} << 20U};
   std::vector<std::string> names{std::string{kFilterFile}, std::string{kReportFileName}};
+  const auto add = [&names](const nlohmann::json& frame) {
+    if (!frame.is_string()) return;
+    const fs::path name = result_name(frame.get<std::string>());
+    names.insert(names.end(), {name, fs::path{kPictureFolder} / name});
+  };
   const auto text = read_text_file(out / kFilterFile, kMostBytes);
   const nlohmann::json earlier = nlohmann::json::parse(text ? *text : "", nullptr, false);
   const nlohmann::json::json_pointer details{"/result/details"};
   if (earlier.is_object() && earlier.contains(details)) {
     for (const nlohmann::json& frame : earlier.at(details)) {
-      if (!frame.is_object() || !frame.contains("frame") || !frame.at("frame").is_string()) continue;
-      const fs::path name = result_name(frame.at("frame").get<std::string>());
-      names.insert(names.end(), {name, fs::path{kPictureFolder} / name});
+      if (frame.is_object()) add(frame.value("frame", nlohmann::json{}));
     }
+  }
+  const nlohmann::json::json_pointer planned{"/result/planned"};
+  if (earlier.is_object() && earlier.contains(planned)) {
+    for (const nlohmann::json& frame : earlier.at(planned)) add(frame);
   }
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
 }
@@ -254,6 +238,33 @@ Error nothing_filtered(const FilterResult& result) {
           {}};
 }
 
+/// Leaves a folder that holds nothing but the document of this run as if it had not been there. Where other files of an
+/// earlier run lie, the document stays, so that the next run knows the folder.
+Status leave_no_document(const RunFolder& out) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator{out.path(), ignored}) {
+    if (entry.path().filename() != kFilterFile) return {};
+  }
+  return out.remove(std::array{kFilterFile});
+}
+
+/// A failure, with what was done before it.
+Error failure_after(Error error, const FilterResult& result, const std::string& folder) {
+  const std::size_t frames = result.frames.size();
+  if (frames == 0) return error;
+  error.message += "; what was filtered before it (" + std::to_string(frames) + (frames == 1 ? " frame" : " frames") +
+                   ") is in " + folder + ", and the same command may be run again";
+  return error;
+}
+
+/// Warns, once for all frames, of a camera that is valid but strange.
+std::string camera_warning(const std::vector<InputFrame>& frames, const FilterOptions& options) {
+  PinholeCamera camera = options.camera;
+  if (!frames.empty() && frames.front().camera) camera = options.camera_options.camera(*frames.front().camera);
+  const std::string doubt = Intrinsics::doubt(camera);
+  return doubt.empty() ? doubt : "warning: " + doubt;
+}
+
 class Filter final : public Command {
  public:
   [[nodiscard]] CommandInfo info() const override {
@@ -263,18 +274,30 @@ class Filter final : public Command {
   void check(const GlobalOptions& /*global*/) override { check_filter_options(filter_); }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
-    SACCADE_TRY(const std::vector<InputFrame> frames, input_frames(filter_));
+    SACCADE_TRY(const FilterInput input, filter_input(filter_));
+    const std::vector<InputFrame>& frames = input.frames;
     SACCADE_CHECK(check_names(frames, context.out()));
+    SACCADE_TRY(filter_.encoding, common_encoding(frames, filter_));
     SACCADE_CHECK(context.open_folder());
     const RunFolder& out = *context.folder();
-    SACCADE_CHECK(remove_earlier_frames(out));
-    SACCADE_TRY(const FilterResult result, filter_all(frames, filter_, out, context.executor(), context.bar()));
-    if (result.frames.empty()) return nothing_filtered(result);
-    for (const std::string& reason : reasons_of(result.left_out)) context.bar().note("left out: " + reason);
+    for (const std::string& note : input.notes) context.bar().note(note);
+    FilterResult result;
+    SACCADE_CHECK(begin(context, frames, result));
+    const Status filtered = filter_all(frames, filter_, out, context.executor(), context.bar(), result);
     const std::string folder = context.out().string();
+    if (!filtered || result.frames.empty()) {
+      if (result.frames.empty()) SACCADE_CHECK(leave_no_document(out));
+      return filtered ? nothing_filtered(result) : failure_after(filtered.error(), result, folder);
+    }
+    for (const std::string& reason : reasons_of(result.left_out)) context.bar().note("left out: " + reason);
     Outcome outcome{.result = filter_json(filter_, folder, result, interrupted())};
     SACCADE_CHECK(server::write_report(out / kReportFileName, context.document(outcome.result)));
-    if (result.points() > 0) outcome.text = filter_text(folder, result);
+    if (result.points() > 0) {
+      outcome.text = filter_text(folder, result);
+      for (const std::string& warning : {camera_warning(frames, filter_), filter_range_warning(result)}) {
+        if (!warning.empty()) outcome.warnings.push_back(warning);
+      }
+    }
     if (interrupted()) {
       outcome.cut_short = "interrupted after " + std::to_string(result.frames.size()) + " of " +
                           std::to_string(frames.size()) + " frames; they are in " + folder;
@@ -285,6 +308,16 @@ class Filter final : public Command {
   }
 
  private:
+  /// Writes the document of a run that is not complete, by which a later run knows the folder and what lies in it.
+  [[nodiscard]] Status begin(const Context& context, const std::vector<InputFrame>& frames,
+                             FilterResult& result) const {
+    const RunFolder& out = *context.folder();
+    SACCADE_CHECK(remove_earlier_frames(out));
+    for (const InputFrame& frame : frames) result.planned.push_back(frame.file);
+    return write_json(out / kFilterFile,
+                      context.document_so_far(filter_json(filter_, context.out().string(), result, false)));
+  }
+
   FilterOptions filter_;
 };
 

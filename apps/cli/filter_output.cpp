@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <sstream>
 
 #include "filter.hpp"
@@ -36,9 +37,15 @@ std::string count_and_share(std::size_t count, std::size_t of) {
 
 std::size_t FilterResult::points() const { return sum(*this, &FilteredFrame::points); }
 
+std::size_t FilterResult::out_of_range() const { return sum(*this, &FilteredFrame::out_of_range); }
+
 json filter_json(const FilterOptions& options, const std::string& out, const FilterResult& result, bool interrupted) {
   json details = json::array();
   for (const FilteredFrame& frame : result.frames) details.push_back(frame_json(frame));
+  json planned = json::array();  // for the next run into the folder, should this one not come to its end
+  if (!result.is_complete()) {
+    for (const std::filesystem::path& file : result.planned) planned.push_back(file.string());
+  }
   json left_out = json::array();
   for (const auto& [file, error] : result.left_out) {
     const std::string name = file.string();
@@ -51,7 +58,7 @@ json filter_json(const FilterOptions& options, const std::string& out, const Fil
           {"points", result.points()},
           {"shadow", sum(result, &FilteredFrame::shadow_points)},
           {"veil", sum(result, &FilteredFrame::veil_points)},
-          {"out_of_range", sum(result, &FilteredFrame::out_of_range)},
+          {"out_of_range", result.out_of_range()},
           {"ms_per_frame", {{"median", median_ms(result)}}},
           {"method", kDepthFilterMethodNames.of(options.filter.method)},
           {"baseline_m", options.filter.baseline_m},
@@ -60,6 +67,8 @@ json filter_json(const FilterOptions& options, const std::string& out, const Fil
           {"steps", {{"shadow", options.filter.remove_shadow_points}, {"veil", options.filter.remove_veil_points}}},
           {"depth_scale", options.encoding.units_per_m},
           {"interrupted", interrupted},
+          {"complete", result.is_complete()},
+          {"planned", std::move(planned)},
           {"left_out", std::move(left_out)},
           {"details", std::move(details)}};
 }
@@ -73,11 +82,22 @@ std::string filter_text(const std::string& out, const FilterResult& result) {
   summary.line("points", std::to_string(points));
   summary.line("shadow", count_and_share(sum(result, &FilteredFrame::shadow_points), points));
   summary.line("veil", count_and_share(sum(result, &FilteredFrame::veil_points), points));
-  const std::size_t out_of_range = sum(result, &FilteredFrame::out_of_range);
+  const std::size_t out_of_range = result.out_of_range();
   if (out_of_range > 0) summary.line("out of range", std::to_string(out_of_range) + " more, removed as well");
   summary.line("per frame", fixed(median_ms(result), 2) + " ms (median, of the filter alone)");
   summary.line("results", out);
   return text.str();
+}
+
+std::string filter_range_warning(const FilterResult& result) {
+  constexpr double kMost{0.9};  // a room behind the subject is often out of range
+  const std::size_t measured = result.points() + result.out_of_range();
+  const double share =
+      static_cast<double>(result.out_of_range()) / static_cast<double>(std::max<std::size_t>(1, measured));
+  if (!(share > kMost)) return {};
+  return "warning: " + percent(share) +
+         " of the measured pixels lie outside of the camera's range and were removed: see --depth-scale, --min-range "
+         "and --max-range";
 }
 
 }  // namespace saccade::cli

@@ -138,7 +138,7 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
   const bool tracked = !record.raycast_ms.empty() || !run.fit;
   json result{{"folder", run.options.frames.string()},
               {"out", run.out},
-              {"layout", run.info.is_bag ? "bag" : to_string(run.info.layout)},
+              {"layout", run.info.is_bag ? "bag" : kRgbdLayoutWords.of(run.info.layout)},
               {"damage", run.info.damage.empty() ? json{} : json(run.info.damage)},
               {"notes", run.info.notes},
               {"depth_units_per_m", run.info.encoding.units_per_m},
@@ -186,8 +186,9 @@ std::string fuse_text(const FuseRun& run, const TsdfSnapshot& map) {
   const Summary summary{text};
   summary.line("frames", std::to_string(record.fused.size()) + " fused, " + std::to_string(record.lost.size()) +
                              " lost, " + std::to_string(record.skipped.size()) + " skipped");
-  const std::string source = run.info.is_bag ? "bag" : "folder";
-  const std::string why = " (the " + source + (run.info.has_poses ? " has poses)" : " has no poses)");
+  const std::string source =
+      run.folder.poses_file ? run.folder.poses_file->string() : std::string{run.info.is_bag ? "the bag" : "the folder"};
+  const std::string why = " (" + source + (run.info.has_poses ? " has poses)" : " has no poses)");
   summary.line("tracking", std::string{to_string(run.tracking)} + (run.options.tracking ? "" : why));
   if (run.fit) {
     summary.line("residual", millimetres(run.fit->residual.median_m()) + " median over " +

@@ -19,6 +19,12 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
+/// Whether a document of `scene sequence` beside the frames says that they are not all there.
+bool is_cut_sequence(const fs::path& folder) {
+  const auto document = read_json(folder / "sequence.json");
+  return document && document->is_object() && document->value("complete", json{}) == json(false);
+}
+
 }  // namespace
 
 Result<Description> describe_frames(const fs::path& folder) {
@@ -38,7 +44,7 @@ Result<Description> describe_frames(const fs::path& folder) {
   const PinholeCamera& camera = source->camera();
   const std::size_t frames = source->size().value_or(0);
   Description described;
-  described.line("frames", std::to_string(frames) + ", layout " + std::string{to_string(info.layout)});
+  described.line("frames", std::to_string(frames) + ", layout " + std::string{kRgbdLayoutWords.of(info.layout)});
   const std::string rays = ", f = " + fixed(camera.fx, 1) + " px (" + info.intrinsics_from + ")";
   described.line("camera", std::to_string(camera.width) + " × " + std::to_string(camera.height) + " pixels" +
                                (lacks.empty() ? rays : "; " + lacks));
@@ -49,11 +55,13 @@ Result<Description> describe_frames(const fs::path& folder) {
   described.line("depth", fixed(info.encoding.units_per_m, 1) + " samples per metre (" +
                               std::string{to_string(info.units_from)} + ")");
   described.line("colour", info.has_color ? "yes" : "none");
+  const bool is_cut = is_cut_sequence(folder);
+  if (is_cut) described.line("incomplete", "scene sequence was interrupted; run the same command again for all frames");
   for (const std::string& note : info.notes) described.line("note", note);
   described.result = {{"kind", "frames"},
                       {"frames",
                        {{"count", frames},
-                        {"layout", to_string(info.layout)},
+                        {"layout", kRgbdLayoutWords.of(info.layout)},
                         {"camera", lacks.empty() ? camera_to_json(camera) : json{}},
                         {"intrinsics_from", lacks.empty() ? json{info.intrinsics_from} : json{}},
                         {"poses", info.has_poses},
@@ -61,6 +69,7 @@ Result<Description> describe_frames(const fs::path& folder) {
                         {"depth_units_per_m", info.encoding.units_per_m},
                         {"depth_units_from", to_string(info.units_from)},
                         {"notes", info.notes},
+                        {"complete", !is_cut},
                         {"color", info.has_color}}}};
   return described;
 }
@@ -142,6 +151,9 @@ Result<Description> describe_result(const fs::path& path) {
   for (const char* name : {"scene", "strategy", "tracking", "frames", "lost", "depth_residual_m", "trajectory_error_m",
                            "stopped_because"}) {
     if (result.is_object() && result.contains(name)) described.line(name, result[name].dump());
+  }
+  if (result.is_object() && result.value("complete", json{}) == json(false)) {
+    described.line("incomplete", "the run failed or was interrupted; run the same command again");
   }
   if (result.is_object() && result.contains("views") && result["views"].is_array()) {
     described.line("views", std::to_string(result["views"].size()));

@@ -16,27 +16,53 @@ namespace {
 
 constexpr std::size_t kMostSlices{100000};
 
-/// "2/10": slice 2 of 0 … 9. "auto/10" takes the number from the environment of a job array, of mpirun or of
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+// The number of a task of an array, and ranks of a job's processes; all from 0.
+constexpr const char* kArrayNumber{"SLURM_ARRAY_TASK_ID"};
+constexpr std::array kRanks{"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
+constexpr const char* kIndexOfKubernetes{"JOB_COMPLETION_INDEX"};
+constexpr const char* kRankOfSlurm{"SLURM_PROCID"};
+
+/// SLURM_PROCID, where the job has as many tasks as there are slices; else empty. A job of one task has it too.
+std::string rank_of_slurm(const std::string& slices) {
+  const std::string of_step = environment("SLURM_STEP_NUM_TASKS");
+  const std::string tasks = of_step.empty() ? environment("SLURM_NTASKS") : of_step;
+  return tasks == slices ? environment(kRankOfSlurm) : "";
+}
+
+/// The number of this task among all that run slices. Throws a usage error of --shard.
+std::string number_of_task(const std::string& slices) {
+  const std::string array = environment(kArrayNumber);
+  if (!array.empty()) {
+    // A job of an array has ranks as well where it starts an MPI; they would all take one slice.
+    for (const char* name : {kRanks[0], kRanks[1], kRanks[2], kRankOfSlurm}) {
+      const std::string rank = environment(name);
+      if (rank.empty() || rank == "0") continue;
+      usage_error("--shard", std::string{"cannot tell the slice: "} + kArrayNumber + " is " + array + " and " + name +
+                                 " is " + rank + "; name the slice, such as 0/10, or run one process per task");
+    }
+    return array;
+  }
+  for (const char* name : {kRanks[0], kRanks[1], kRanks[2], kIndexOfKubernetes}) {
+    if (const std::string number = environment(name); !number.empty()) return number;
+  }
+  if (const std::string number = rank_of_slurm(slices); !number.empty()) return number;
+  usage_error("--shard", std::string{"found no number of a task in the environment: none of "} + kArrayNumber + ", " +
+                             joined(kRanks, ", ", [](const char* name) { return std::string{name}; }) + ", " +
+                             kIndexOfKubernetes + " is set, nor " + kRankOfSlurm +
+                             " in a job with a task per slice; name the slice, such as 0/10");
+}
+
+/// "2/10": slice 2 of 0 … 9. "auto/10" takes the number from the environment of a job array, of mpirun, of srun or of
 /// Kubernetes. Throws a usage error of --shard.
 Slice parse_slice(const std::string& text) {
-  // Ranks and task numbers, all from 0. A task of an array may be started by an MPI of its own, so its number comes
-  // first.
-  constexpr std::array kNumbers{"SLURM_ARRAY_TASK_ID", "OMPI_COMM_WORLD_RANK", "PMI_RANK", "JOB_COMPLETION_INDEX"};
   const std::size_t slash = text.find('/');
   std::string index = text.substr(0, slash);
-  if (index == "auto") {
-    for (const char* name : kNumbers) {
-      const char* value = std::getenv(name);
-      if (value == nullptr) continue;
-      index = value;
-      break;
-    }
-    if (index == "auto") {
-      usage_error("--shard", "found no number of a task in the environment: none of " +
-                                 joined(kNumbers, ", ", [](const char* name) { return std::string{name}; }) +
-                                 " is set; name the slice, such as 0/10");
-    }
-  }
+  if (index == "auto") index = number_of_task(slash == std::string::npos ? "" : text.substr(slash + 1));
   const auto number = whole_number(index);
   const auto count = slash == std::string::npos ? std::nullopt : whole_number(std::string_view{text}.substr(slash + 1));
   if (!number || !count || *number >= *count || *count > kMostSlices) {
@@ -70,7 +96,7 @@ void add_machine_options(CLI::App& command, MachineOptions& options) {
   const auto take_folders = [&options](const std::vector<std::string>& given) {
     options.merge = true;
     for (const std::string& folder : given) {
-      if (!folder.empty() && folder != "true") options.merged.emplace_back(folder);
+      if (!folder.empty()) options.merged.emplace_back(folder);
     }
   };
   command

@@ -157,6 +157,7 @@ Status write_picture(const NbvOptions& options, const RunFolder& out, const Tsdf
   std::vector<ScoredPose> scored;
   for (const OrderedView& view : ranked) scored.push_back({view.T_world_camera, static_cast<double>(view.gain)});
   ViewPictureConfig picture;
+  picture.best = options.top;  // with --all as well: hundreds would hide each other
   picture.sensor = options.gain.sensor;
   picture.overview.up = options.up.value_or(Eigen::Vector3d::UnitZ());
   picture.gain_unit = kGainCountNames.of(options.gain.count);

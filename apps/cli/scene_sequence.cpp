@@ -249,7 +249,12 @@ class SceneSequence final : public Command {
     std::ostringstream text;
     text << true_poses.size() << " frames with " << result["segments"] << " true segments in " << context.out().string()
          << '\n';
-    return Outcome{.result = std::move(result), .text = text.str()};
+    Outcome outcome{.result = std::move(result), .text = text.str()};
+    if (true_poses.size() < frames) {
+      outcome.cut_short = "interrupted after " + std::to_string(true_poses.size()) + " of " + std::to_string(frames) +
+                          " frames; they are in " + context.out().string();
+    }
+    return outcome;
   }
 
  private:

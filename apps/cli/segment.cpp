@@ -12,6 +12,7 @@
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "server/report_file.hpp"
+#include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -25,10 +26,26 @@ Status check_outputs(const SegmentOptions& options, const GlobalOptions& global)
   return check_output(json_file, "--json", {options.input, options.out, options.picture, options.curve_truth});
 }
 
+std::string rounded(double length_m) {
+  std::ostringstream text;
+  text << std::setprecision(2) << length_m;
+  return text.str();
+}
+
+/// Advice for a map whose voxels are larger than those of the segmentation, so that nothing touches anything; empty
+/// for others.
+std::string advice_on_small_voxels(const SegmentOptions& options, double map_voxel_size_m) {
+  const double voxel_m = options.supervoxels.voxels.voxel_size_m;
+  if (options.fills() || voxel_m >= map_voxel_size_m) return {};
+  return "the voxels are " + rounded(voxel_m) + " m large and those of the map " + rounded(map_voxel_size_m) +
+         " m, so that few points touch: leave out --voxel-size and --seed-size, or give no less than the map's";
+}
+
 /// Advice for a cloud whose points are far apart against the voxels, so that nothing touches anything; empty for
 /// others. What to try: voxels twice as large as the distance between points, and seeds as far apart as usual for them.
 std::string advice_on_sparse_points(const SegmentOptions& options, const SegmentInput& input,
                                     const Executor& executor) {
+  if (input.is_map()) return advice_on_small_voxels(options, *input.map_voxel_size_m);
   constexpr double kVoxelsPerSpacing{2.0};
   constexpr double kFarApart{1.5};
   const SupervoxelConfig& supervoxels = options.supervoxels;
@@ -36,11 +53,6 @@ std::string advice_on_sparse_points(const SegmentOptions& options, const Segment
   if (options.fills() || supervoxels.voxels.single_camera) return {};
   const std::optional<double> spacing_m = point_spacing_m(input.cloud.positions_m, executor);
   if (!spacing_m || *spacing_m < kFarApart * voxel_m) return {};
-  const auto rounded = [](double length_m) {
-    std::ostringstream text;
-    text << std::setprecision(2) << length_m;
-    return text.str();
-  };
   const double try_m = kVoxelsPerSpacing * *spacing_m;
   return "the points are " + rounded(*spacing_m) + " m apart and the voxels " + rounded(voxel_m) +
          " m large, so that few points touch: are the coordinates metres? Try --voxel-size " + rounded(try_m) +
@@ -164,6 +176,7 @@ class Segment final : public Command {
     context.stage("reading");
     SACCADE_TRY(SegmentInput input, read_segment_input(segment_.input, context.executor()));
     context.lap("read");
+    if (input.is_map()) SACCADE_CHECK(fit_to_map(*input.map_voxel_size_m, segment_));
     SACCADE_CHECK(context.stop_if_interrupted());
     SACCADE_TRY(SegmentFindings findings, find_segments(segment_, input, context.executor(), context.bar()));
     context.lap("segment");

@@ -48,6 +48,8 @@ struct SegmentOptions {
   std::filesystem::path report;   ///< page of the report; empty: none
   bool write_pictures{true};      ///< into the folder of --out
   SupervoxelConfig supervoxels;
+  bool has_voxel_size{false};  ///< given, so not chosen by the voxels of a map
+  bool has_seed_size{false};
   std::optional<Eigen::Vector3d> viewpoint_m;  ///< default: what the cloud says
   LccpConfig lccp;
   double max_color_difference{SvLccpConfig{}.max_color_difference};
@@ -69,7 +71,8 @@ struct SegmentInput {
   PointCloud cloud;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< surface of a map; empty for a cloud
   Eigen::Vector3d viewpoint_m{Eigen::Vector3d::Zero()};
-  bool is_map{false};
+  std::optional<double> map_voxel_size_m;  ///< of a map
+  [[nodiscard]] bool is_map() const { return map_voxel_size_m.has_value(); }
   Origin radii{Origin::file};
   Origin normals{Origin::file};
 };
@@ -94,6 +97,9 @@ struct SegmentFindings {
 void declare_segment(Options& declared, SegmentOptions& options);
 /// Throws usage errors, and sets the defaults of the method. `out`: value of --out.
 void check_segment_options(const CLI::App& command, const std::filesystem::path& out, SegmentOptions& options);
+/// Sets the sizes that were not given for a map with this voxel size: 1, 2, 4 or 8 of its voxels, as LiveSegments has
+/// them, and seeds as many voxels apart as otherwise. Answers invalid_argument for seeds closer than voxels.
+[[nodiscard]] Status fit_to_map(double map_voxel_size_m, SegmentOptions& options);
 /// Whether --out names a folder for all results: a name without the ending of a cloud.
 [[nodiscard]] bool is_segment_folder(const std::filesystem::path& out);
 

@@ -38,7 +38,7 @@ Result<SegmentInput> read_map_surface(const std::filesystem::path& path, const E
   file.table = fields_of(mesh);
   file.width = file.table.rows;
   input.file.file = std::move(file);
-  input.is_map = true;
+  input.map_voxel_size_m = map.config.voxel_size_m;
   input.triangles = std::move(mesh.triangles);
   return input;
 }

@@ -5,6 +5,7 @@
 
 #include "declaration.hpp"
 #include "saccade/core/angle.hpp"
+#include "saccade/segment/live_segments.hpp"
 #include "segment.hpp"
 
 namespace saccade::cli {
@@ -21,9 +22,10 @@ std::string brief(double number) {
 void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
   SupervoxelConfig& supervoxels = options.supervoxels;
   add_value(command, "--voxel-size", supervoxels.voxels.voxel_size_m, "METRES",
-            "edge of the voxels, metres (sv-lccp: 0.01)");
-  add_value(command, "--seed-size", supervoxels.seed_spacing_m, "METRES",
-            "distance between the seeds of supervoxels, metres (sv-lccp: 0.05)");
+            "edge of the voxels, metres (sv-lccp: 0.01; for a map: the nearest of 1, 2, 4 and 8 of its voxels)");
+  add_value(
+      command, "--seed-size", supervoxels.seed_spacing_m, "METRES",
+      "distance between the seeds of supervoxels, metres (sv-lccp: 0.05; for a map: as many voxels as for clouds)");
   add_value(command, "--spatial-weight", supervoxels.spatial_weight, "WEIGHT",
             "weight of the distance from a supervoxel's centre (sv-lccp: 0.1)");
   add_value(command, "--normal-weight", supervoxels.normal_weight, "WEIGHT",
@@ -161,6 +163,23 @@ void check_outputs(const fs::path& out, const SegmentOptions& options) {
 
 }  // namespace
 
+Status fit_to_map(double map_voxel_size_m, SegmentOptions& options) {
+  if (options.fills()) return {};
+  SupervoxelConfig& own = options.supervoxels;
+  const double seed_spacing_vox = own.seed_spacing_m / own.voxels.voxel_size_m;
+  if (!options.has_voxel_size) {
+    MapSegmentsConfig wanted;
+    wanted.voxel_size_m = own.voxels.voxel_size_m;
+    own.voxels.voxel_size_m = wanted.supervoxels(map_voxel_size_m).voxels.voxel_size_m;
+    if (!options.has_seed_size) own.seed_spacing_m = seed_spacing_vox * own.voxels.voxel_size_m;
+  }
+  if (own.seed_spacing_m >= own.voxels.voxel_size_m) return {};
+  return Error{Errc::invalid_argument,
+               "seeds of " + brief(own.seed_spacing_m) + " m are closer than the voxels of " +
+                   brief(own.voxels.voxel_size_m) + " m; pass a larger --seed-size, or a smaller --voxel-size",
+               options.input.string()};
+}
+
 bool is_segment_folder(const fs::path& out) {
   std::error_code ignored;
   return !out.empty() && (!is_cloud_name(out) || fs::is_directory(out, ignored));
@@ -196,6 +215,8 @@ void declare_segment(Options& declared, SegmentOptions& options) {
 }
 
 void check_segment_options(const CLI::App& command, const fs::path& out, SegmentOptions& options) {
+  options.has_voxel_size = command.count("--voxel-size") > 0;
+  options.has_seed_size = command.count("--seed-size") > 0;
   apply_method(command, options);
   check_outputs(out, options);
   require_positive(options.supervoxels.voxels.voxel_size_m, "--voxel-size");

@@ -129,7 +129,7 @@ json segment_json(const SegmentOptions& options, const SegmentInput& input, cons
   const auto unless_filled = [&](std::size_t count) { return options.fills() ? json(nullptr) : json(count); };
   const bool has_normals = options.fills() ? input.normals != Origin::estimate : !input.cloud.normals.empty();
   json result{{"input", options.input.string()},
-              {"kind", input.is_map ? "map" : "cloud"},
+              {"kind", input.is_map() ? "map" : "cloud"},
               {"method", kSegmentMethodNames.of(options.method)},
               {"as_printed", options.as_printed},
               {"parameters", parameters_json(options)},
@@ -137,7 +137,7 @@ json segment_json(const SegmentOptions& options, const SegmentInput& input, cons
               {"points", findings.points},
               {"voxels", unless_filled(findings.supervoxels.voxels)},
               {"supervoxels", unless_filled(findings.supervoxels.supervoxels.size())},
-              {"normals", !has_normals ? "estimated" : (input.is_map ? "tsdf gradient" : "given")},
+              {"normals", !has_normals ? "estimated" : (input.is_map() ? "tsdf gradient" : "given")},
               {"ms", timings_json(options, findings)},
               {"found", findings.segments},
               {"listed_from", options.list_from},

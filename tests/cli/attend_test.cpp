@@ -2,7 +2,9 @@
 // saccade attend as a user runs it, on made-up tasks and on the recorded hands where they are there.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <fstream>
+#include <regex>
 
 #include "cli/run_program.hpp"
 #include "saccade/attention/gmm_as.hpp"
@@ -164,6 +166,34 @@ TEST(AttendRecorded, TheThesisHandsGiveItsFigures) {
   EXPECT_EQ(result.at("ground_truth"), 260);
   EXPECT_NEAR(result.at("precision").get<double>(), 0.955, 0.03);
   EXPECT_NEAR(result.at("recall").get<double>(), 0.977, 0.03);
+}
+
+TEST_F(Attend, FindingsStayWhenThePicturesAreInterrupted) {
+  Arguments many = attend({});
+  for (int i = 0; i < 60; ++i) many.push_back(file(i % kTasks).string());
+  const fs::path out = folder_ / "out";
+  RunningProgram program{many + Arguments{"--out", out.string()}};
+  ASSERT_TRUE(wait_for_file(out / "trajectory-000.png"));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find(" of 64 pictures; all actions are in "), std::string::npos) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(text_of(out / "attend.json")).at("result").at("trajectories"), 64);
+  EXPECT_EQ(run_program(attend({"--out", out.string(), "--no-pictures"})).status, 0);
+}
+
+TEST_F(Attend, NoticesUnitsThatNoHandHas) {
+  HandTrajectory millimetres = read_hand_trajectory(file(0)).value().trajectory;
+  for (HandSample& sample : millimetres) sample.position_m *= 1000.0;
+  ASSERT_TRUE(write_hand_csv(folder_ / "mm.csv", millimetres));
+  const Outcome outcome = run_program({"attend", (folder_ / "mm.csv").string(), "--quiet"});
+  for (const char* part : {"mm.csv", "hands do not move at ", "not millimetres", "times in seconds"}) {
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << outcome.err;
+  }
+  EXPECT_FALSE(std::regex_search(outcome.out, std::regex{"[0-9]\\.[0-9]{3}[-0-9]+\\.[0-9]{3}"})) << outcome.out;
+  EXPECT_EQ(run_program(attend({})).err, "");
+  const std::string stamps = folder_.write("ns.csv", "time,x,y,z\n1700000000000000000,0,0,0\n").string();
+  expect_failure(run_program({"attend", stamps, "--quiet"}), 3, "attend", {"ns.csv, line 2", "nanoseconds"});
 }
 
 }  // namespace

@@ -112,12 +112,22 @@ TEST(CompareSlices, ShardsThatDoNotFitAreNamedAndTheCampaignStays) {
   };
   refused({"--seeds", "1"}, {"0-of-1/campaign.sqlite", "seed 2", "not among its seeds"});
   refused(wanted + Arguments{"--min-gain", "2"}, {"0-of-1", "not of this comparison", "min_gain is 1.0, not 2.0"});
-  refused(wanted + Arguments{"--strategies", "sphere"}, {"0-of-1", "random", "not among its strategies"});
+  refused({"--seeds", "1-2", "--strategies", "surface"}, {"0-of-1", "sphere", "not among its strategies"});
   refused(wanted + Arguments{"--merge", (folder / "nowhere").string()}, {"nowhere", "no campaign.sqlite"});
 
   const auto change = [&shard](const std::string& sql) { ASSERT_TRUE(SqliteFile::open(shard, 1000)->run(sql)); };
   change("UPDATE runs SET program_version = '0.0.9'");
-  refused(wanted, {"0-of-1", "made by Saccade 0.0.9"});
+  refused(wanted, {"0-of-1", "made by Saccade 0.0.9", "move the folder of the shard away"});
+  // Its runs do not count, and are not done again into the same file.
+  const Outcome old = run_program(compare(out, wanted + Arguments{"--status"}));
+  EXPECT_NE(old.out.find("2 in the campaign, 0 in shards, 2 to be done"), std::string::npos) << old.out << old.err;
+  EXPECT_NE(old.out.find("made by Saccade 0.0.9"), std::string::npos) << old.out;
+  expect_failure(run_program(slice(out, wanted, "0/1")), 3, "compare", {"0-of-1", "made by Saccade 0.0.9"});
+  std::ofstream{shard, std::ios::binary} << good;
+  change("UPDATE views SET T_world_camera = '[['");
+  refused(wanted, {"0-of-1/campaign.sqlite", "cannot read the run"});
+  std::ofstream{shard, std::ios::binary | std::ios::trunc};
+  refused(wanted, {"0-of-1/campaign.sqlite", "is empty"});
   std::ofstream{shard, std::ios::binary} << good;
   change("PRAGMA user_version = 99");
   refused(wanted, {"0-of-1", "newer Saccade"});
@@ -130,8 +140,48 @@ TEST(CompareSlices, ShardsThatDoNotFitAreNamedAndTheCampaignStays) {
   EXPECT_EQ(status.status, 0) << status.err;
   EXPECT_NE(status.out.find("unreadable: "), std::string::npos) << status.out;
   std::ofstream{shard, std::ios::binary} << good;
+  // A record that cannot be read stops nothing, and the next try writes it anew.
+  std::ofstream{shard.parent_path() / "shard.json"} << "{";
+  const Outcome unknown = run_program(compare(out, wanted + Arguments{"--status"}));
+  EXPECT_EQ(unknown.status, 0) << unknown.err;
+  EXPECT_NE(unknown.out.find("unknown"), std::string::npos) << unknown.out;
   const Outcome merged = run_program(compare(out, wanted + Arguments{"--merge", "--quiet"}));
   EXPECT_NE(merged.out.find("2 merged now, 0 known"), std::string::npos) << merged.out << merged.err;
+  ASSERT_EQ(run_program(slice(out, wanted, "0/1")).status, 0);
+  EXPECT_NE(text_of(shard.parent_path() / "shard.json").find("\"done\""), std::string::npos);
+}
+
+TEST(CompareSlices, RunsOfTwoSettingsShareTheirShards) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; the unit tests merge campaigns";
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  const auto wanted = [](const char* min_gain) { return Arguments{"--seeds", "1", "--min-gain", min_gain}; };
+  for (const char* min_gain : {"1", "2"}) {
+    for (const char* of : {"0/2", "1/2"}) ASSERT_EQ(run_program(slice(out, wanted(min_gain), of)).status, 0);
+  }
+  for (const char* min_gain : {"1", "2"}) {
+    const Outcome merged = run_program(compare(out, wanted(min_gain) + Arguments{"--merge", "--quiet"}));
+    ASSERT_EQ(merged.status, 0) << merged.err;
+    EXPECT_NE(merged.out.find("2 merged now"), std::string::npos) << merged.out << merged.err;
+  }
+  EXPECT_EQ(bits_of(out).at(0).size(), 4U);
+}
+
+TEST(CompareSlices, AFolderThatIsNoCampaignIsRefused) {
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  expect_failure(run_program(compare(out, {"--status"})), 3, "compare", {"out", "there is no campaign"});
+  fs::create_directories(out);
+  std::ofstream{out / "letter.txt"} << "Dear reader";
+  expect_failure(run_program(compare(out, {"--status"})), 3, "compare", {"there is no campaign"});
+  expect_failure(run_program(slice(out, {"--seeds", "1"}, "0/2")), 3, "compare", {"other files", "letter.txt"});
+  EXPECT_FALSE(fs::exists(out / "shards"));
+  const fs::path failed = folder / "failed/shards/0-of-2";
+  fs::create_directories(failed);
+  std::ofstream{failed / "shard.json"} << R"({"slice": 0, "of": 2, "state": "failed", "tries": 1, "machine": "node7",
+    "job": "", "began": "", "ended": "", "error": "scene.yaml: there is no such file"})";
+  expect_failure(run_program(compare(folder / "failed", {"--merge"})), 3, "compare",
+                 {"no shards to merge", "slice 0 of 2", "scene.yaml: there is no such file"});
 }
 
 TEST(CompareSlices, TheNumberOfATaskIsTheSlice) {
@@ -143,17 +193,31 @@ TEST(CompareSlices, TheNumberOfATaskIsTheSlice) {
   };
   for (const char* wrong : {"3", "3/3", "/3", "0/0", "-1/3", "x/3", "1/3/5", "0/1000000"})
     refused({"--shard", wrong}, {"--shard", "0/10 and the last 9/10"});
-  for (const char* name : {"SLURM_ARRAY_TASK_ID", "OMPI_COMM_WORLD_RANK", "PMI_RANK", "JOB_COMPLETION_INDEX"})
-    ::unsetenv(name);
+  const std::vector<const char*> names{"SLURM_ARRAY_TASK_ID", "OMPI_COMM_WORLD_RANK", "PMI_RANK",
+                                       "PMIX_RANK",           "JOB_COMPLETION_INDEX", "SLURM_PROCID",
+                                       "SLURM_NTASKS",        "SLURM_STEP_NUM_TASKS"};
+  for (const char* name : names) ::unsetenv(name);
   refused({"--shard", "auto/3"}, {"--shard", "SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"});
   ::setenv("OMPI_COMM_WORLD_RANK", "7", 1);
   refused({"--shard", "auto/3"}, {"'7/3'"});
   ::setenv("SLURM_ARRAY_TASK_ID", "2", 1);
+  refused({"--shard", "auto/3"}, {"--shard", "SLURM_ARRAY_TASK_ID is 2", "OMPI_COMM_WORLD_RANK is 7"});
+  ::unsetenv("SLURM_ARRAY_TASK_ID");
+  ::unsetenv("OMPI_COMM_WORLD_RANK");
+  ::setenv("SLURM_PROCID", "7", 1);
+  ::setenv("SLURM_NTASKS", "9", 1);
+  refused({"--shard", "auto/7"}, {"SLURM_PROCID"});  // other tasks than slices
+  ::setenv("SLURM_NTASKS", "7", 1);
+  refused({"--shard", "auto/7"}, {"'7/7'"});
+  ::setenv("PMIX_RANK", "8", 1);
+  refused({"--shard", "auto/7"}, {"'8/7'"});
+  ::unsetenv("PMIX_RANK");
+  ::setenv("SLURM_PROCID", "0", 1);
+  ::setenv("SLURM_ARRAY_TASK_ID", "2", 1);
   const Outcome done = run_program(compare(out, {"--seeds", "1", "--shard", "auto/3", "--quiet"}));
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_TRUE(fs::exists(shard_file(out, "2-of-3")));
-  ::unsetenv("SLURM_ARRAY_TASK_ID");
-  ::unsetenv("OMPI_COMM_WORLD_RANK");
+  for (const char* name : names) ::unsetenv(name);
 }
 
 TEST(CompareSlices, TheScriptForSlurmIsShown) {
@@ -177,6 +241,70 @@ TEST(CompareSlices, TheScriptForSlurmIsShown) {
   refused({"--slurm", "--partition", "a b"}, {"--partition", "letters"});
   refused({"--slurm", "--shard", "0/3"}, {"cannot be given with --shard"});
   refused({"--merge", "--status"}, {"cannot be given with --status"});
+}
+
+/// Stand-ins for sbatch and squeue come first in PATH while this lives.
+class StandInSlurm {
+ public:
+  explicit StandInSlurm(const fs::path& folder) : folder_{folder}, path_{std::getenv("PATH")} {
+    fs::create_directories(folder_);
+    set("squeue", "");
+    ::setenv("PATH", (folder_.string() + ':' + path_).c_str(), 1);
+  }
+  StandInSlurm(const StandInSlurm&) = delete;
+  StandInSlurm& operator=(const StandInSlurm&) = delete;
+  ~StandInSlurm() { ::setenv("PATH", path_.c_str(), 1); }
+
+  void set(const std::string& name, const std::string& script) const {
+    std::ofstream{folder_ / name} << "#!/bin/sh\n" << script << '\n';
+    fs::permissions(folder_ / name, fs::perms::owner_all);
+  }
+
+ private:
+  fs::path folder_;
+  std::string path_;
+};
+
+TEST(CompareSlices, WhatSlurmWarnsOfIsNotTheNumberOfAJob) {
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  const StandInSlurm slurm{folder / "bin"};
+  const Arguments wanted = compare(out, {"--seeds", "1", "--slurm", "--partition", "long", "--json", "-"});
+  const std::string calls = (folder / "calls").string();
+  slurm.set("squeue", "echo 'squeue: warning' >&2");
+  slurm.set("sbatch", "echo \"$*\" \"[$SBATCH_ARRAY_INX]\" >>'" + calls +
+                          "'; echo 'INFO: a plugin'; echo '123;clusterA'; echo 'sbatch: Billing' >&2");
+  ::setenv("SBATCH_ARRAY_INX", "0-9", 1);
+  const Outcome done = run_program(wanted);
+  ::unsetenv("SBATCH_ARRAY_INX");
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(done.json().at("result").at("array_job"), "123");
+  const std::string given = text_of(calls);
+  for (const char* part : {"--array=0-1", "--cpus-per-task=1", "--partition=long", "--requeue", "--output=/dev/null",
+                           "--job-name=saccade-", "--dependency=afterany:123", "[]"})
+    EXPECT_NE(given.find(part), std::string::npos) << part << '\n' << given;
+  EXPECT_EQ(given.find("[0-9]"), std::string::npos) << given;
+
+  // The script writes to its log before it does anything that may fail.
+  const std::string script = text_of(out / "logs/array.sh");
+  EXPECT_LT(script.find("\nexec >>"), script.find("\ncd ")) << script;
+  EXPECT_LT(script.find("\ncd "), script.find("--shard auto/")) << script;
+
+  slurm.set("sbatch", "");
+  expect_failure(run_program(wanted), 3, "compare", {"sbatch", "no number of a job"});
+  slurm.set("sbatch", "case \"$*\" in *dependency*) echo 'no such queue' >&2; exit 1;; esac; echo 77");
+  expect_failure(run_program(wanted), 3, "compare", {"no such queue", "job 77", "--merge", "scancel 77"});
+  slurm.set("sbatch", "echo 'sbatch: error: Invalid job array specification' >&2; exit 1");
+  expect_failure(run_program(wanted), 3, "compare", {"Invalid job array specification", "MaxArraySize", "--tasks"});
+  fs::create_directory_symlink(out, folder / "other-name");
+  const auto name_of = [&](const fs::path& spelled) {
+    const Outcome shown = run_program(compare(spelled, {"--seeds", "1", "--slurm", "--dry-run"}));
+    const std::size_t at = shown.out.find("--job-name=");
+    return at == std::string::npos ? shown.err : shown.out.substr(at, shown.out.find('\n', at) - at);
+  };
+  EXPECT_EQ(name_of(out), name_of(folder / "other-name"));
+  slurm.set("squeue", "echo 'squeue: warning'; echo '55 '");
+  expect_failure(run_program(wanted), 3, "compare", {"job 55", "still queued or running"});
 }
 
 }  // namespace

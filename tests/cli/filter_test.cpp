@@ -252,5 +252,82 @@ TEST_F(Filter, KeepsWhatIsDoneWhenInterrupted) {
   EXPECT_EQ(names_in(out()).size(), result.at("frames").get<std::size_t>() + 3);  // filter.json, pictures, report.html
 }
 
+TEST_F(Filter, TakesTheDepthImagesOfARecordingAndItsCamera) {
+  const fs::path recording = folder_ / "recording";
+  fs::create_directories(recording);
+  for (int i = 0; i < 2; ++i) {
+    const std::string stem = "frame-00000" + std::to_string(i);
+    fs::copy_file(frame(i), recording / (stem + ".depth.png"));
+    ASSERT_TRUE(write_png16(recording / (stem + ".label.png"), Image16{512, 424, 1000}));
+    ASSERT_TRUE(write_png(recording / (stem + ".color.png"), ColorImage{512, 424}));
+  }
+  (void)folder_.write("recording/camera.json",
+                      R"({"width": 512, "height": 424, "fx": 300, "fy": 300, "cx": 256, "cy": 212,
+                          "min_range_m": 0.5, "max_range_m": 4.5})");
+  const Outcome outcome = run_program({"filter", recording.string(), "--out", out().string(), "--no-pictures"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* part : {"layout seven-scenes", "2 depth images", "camera.json"}) {
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << part << outcome.err;
+  }
+  EXPECT_EQ(names_in(out()), (std::vector<std::string>{"filter.json", "frame-000000.depth.png",
+                                                       "frame-000001.depth.png", "report.html"}));
+  PinholeCamera wide = camera_;
+  wide.fx = wide.fy = 300.0;
+  wide.cx = 256.0;
+  wide.cy = 212.0;
+  wide.min_range_m = 0.5;
+  wide.max_range_m = 4.5;
+  DepthImage expected =
+      DepthFilter::create(wide).value().filter(decode_depth(read_png16(frame(0)).value(), {})).value().depth;
+  clip_to_range(wide, expected);
+  EXPECT_EQ(decode_depth(read_png16(out() / "frame-000000.depth.png").value(), {}), expected);
+}
+
+TEST_F(Filter, LeavesOutLabelsColoursAndMasksByTheirNames) {
+  for (const char* other : {"depth-0.label.png", "depth-0.color.png", "mask.png"}) {
+    ASSERT_TRUE(write_png16(frames() / other, Image16{512, 424, 1000}));
+  }
+  const Outcome outcome = run_program({"filter", frames().string(), "--out", out().string(), "--no-pictures"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("3 images are left out: depth-0.color.png"), std::string::npos) << outcome.err;
+  EXPECT_EQ(names_in(out()).size(), kFrames + 2U);  // filter.json, report.html
+}
+
+TEST_F(Filter, MayBeRunAgainAfterAFailure) {
+  const std::string whole = text_of(frame(1));
+  (void)folder_.write("frames/" + name(1), whole.substr(0, whole.size() / 2));
+  const Arguments both{"filter",       frame(0).string(), frame(1).string(), "--out",
+                       out().string(), "--quiet",         "--no-pictures"};
+  expect_failure(run_program(both), 3, "filter", {name(1), "filtered before it (1 frame)"});
+  EXPECT_EQ(nlohmann::json::parse(text_of(out() / "filter.json")).at("result").at("complete"), false);
+  const Outcome info = run_program({"info", out().string()});
+  EXPECT_NE(info.out.find("incomplete"), std::string::npos) << info.out << info.err;
+  (void)folder_.write("frames/" + name(1), whole);
+  const Outcome again = run_program(both);
+  ASSERT_EQ(again.status, 0) << again.err;
+  const nlohmann::json result = nlohmann::json::parse(text_of(out() / "filter.json")).at("result");
+  EXPECT_EQ(result.at("complete"), true);
+  EXPECT_TRUE(result.at("planned").empty());
+  EXPECT_EQ(names_in(out()), (std::vector<std::string>{name(0), name(1), "filter.json", "report.html"}));
+}
+
+TEST_F(Filter, WarnsWhereNearlyAllIsOutOfRange) {
+  Image16 samples{512, 424, 100};
+  for (int v = 200; v < 220; ++v) std::fill_n(samples.row(v) + 240, 20, std::uint16_t{1000});
+  ASSERT_TRUE(write_png16(folder_ / "tenths.png", samples));
+  const Outcome outcome =
+      run_program({"filter", (folder_ / "tenths.png").string(), "--out", out().string(), "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("99.8 % of the measured pixels"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--depth-scale"), std::string::npos) << outcome.err;
+  EXPECT_EQ(run_program(filter({"--no-pictures", "--force"})).err, "");
+}
+
+TEST_F(Filter, WarnsOnceOfAPrincipalPointFarOutside) {
+  const Outcome outcome = run_program(filter({"--intrinsics", "365,365,-5000,212", "--no-pictures"}));
+  EXPECT_NE(outcome.err.find("the principal point lies 9.8 image widths outside"), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
 }  // namespace
 }  // namespace saccade::test

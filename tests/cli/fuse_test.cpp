@@ -331,5 +331,14 @@ TEST(FuseRecorded, KitchenFitsItsMapWithinEightMillimetres) {
   EXPECT_LT(residuals_m[0], residuals_m[1]) << "why fuse clears by half: docs/decisions/0021-clearing.md";
 }
 
+TEST_F(Fuse, NamesTheFileOfThePoses) {
+  ASSERT_EQ(run_program(fuse(frames(), run(), {"--count", "3", "--no-pictures", "--no-mesh"})).status, 0);
+  const std::string poses = (run() / "trajectory.txt").string();
+  const Outcome outcome =
+      run_program(fuse(frames(), folder_ / "again", {"--count", "3", "--no-pictures", "--no-mesh", "--poses", poses}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("(" + poses + " has poses)"), std::string::npos) << outcome.out;
+}
+
 }  // namespace
 }  // namespace saccade::test

@@ -53,6 +53,7 @@ TEST(Info, DescribesRecordingsAndResults) {
   const nlohmann::json frames = described(folder / "frames", "frames").at("frames");
   EXPECT_EQ(frames.at("count"), 2);
   EXPECT_EQ(frames.at("poses"), true);
+  EXPECT_EQ(frames.at("complete"), true);
   const fs::path result = folder / "result.json";
   ASSERT_EQ(run_program({"scene", "list", "--json", result.string()}).status, 0);
   EXPECT_EQ(described(result, "result").at("run").at("command"), "scene");

@@ -2,6 +2,7 @@
 // saccade nbv, info and sample as a user runs them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -86,6 +87,18 @@ TEST_F(Nbv, PrintsATableAndDraws) {
   const auto poses = read_poses(folder_ / "views" / "views.json");  // what nbv writes, nbv reads
   ASSERT_TRUE(poses);
   EXPECT_EQ(poses->size(), 3U);
+}
+
+TEST_F(Nbv, DrawsAsManyViewsAsAreAskedFor) {
+  const auto picture_of = [&](const char* top) {
+    const fs::path out = folder_ / (std::string{"top-"} + top);
+    EXPECT_EQ(run_program(nbv({"--poi", "0,0,0.05", "--forget", "--top", top, "--out", out.string()})).status, 0);
+    return read_color(out / "views.png").value();
+  };
+  const auto frusta = [](const ColorImage& picture) {
+    return std::count(picture.pixels().begin(), picture.pixels().end(), Rgb8{214, 28, 92});
+  };
+  EXPECT_GT(frusta(picture_of("8")), frusta(picture_of("1")) + 100);
 }
 
 TEST_F(Nbv, PosesFromAFileBoxesAndCounts) {
@@ -208,7 +221,7 @@ TEST_F(Nbv, InfoDescribesTheProgramTheMapAndTheRun) {
   const Outcome of_frames = run_program({"info", (folder_ / "frames").string(), "--json", "-"});
   ASSERT_EQ(of_frames.status, 0) << of_frames.err;
   EXPECT_EQ(of_frames.json().at("result").at("kind"), "frames");
-  EXPECT_EQ(of_frames.json().at("result").at("frames").at("layout"), "seven_scenes");
+  EXPECT_EQ(of_frames.json().at("result").at("frames").at("layout"), "seven-scenes");
 }
 
 TEST(Sample, IsSeededAndKeepsOtherFiles) {

@@ -171,6 +171,9 @@ TEST_F(SceneSequence, KeepsWholeFramesWhenInterrupted) {
   EXPECT_EQ(result.at("interrupted"), true);
   const nlohmann::json document = read_json(folder_ / "a" / "sequence.json").value();
   EXPECT_EQ(document.at("complete"), false);
+  EXPECT_NE(outcome.err.find("interrupted after "), std::string::npos) << outcome.err;
+  const Outcome info = run_program({"info", (folder_ / "a").string()});
+  EXPECT_NE(info.out.find("scene sequence was interrupted"), std::string::npos) << info.out;
   const std::vector<Frame> frames = frames_of("a");
   EXPECT_GE(frames.size(), 4U);
   EXPECT_EQ(frames.size(), document.at("frames").get<std::size_t>());

@@ -341,8 +341,30 @@ TEST_F(Segment, StopsWhenInterrupted) {
   program.send(SIGINT);
   const Outcome outcome = program.finish();
   EXPECT_EQ(outcome.status, 130) << outcome.err;
-  EXPECT_NE(outcome.err.find("interrupted; nothing was written"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted; no result was written"), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Segment, VoxelsAreThoseOfTheMapUnlessGiven) {
+  make_sample(folder_ / "frames", 2);
+  const Arguments coarse{"fuse",    (folder_ / "frames").string(),
+                         "--out",   (folder_ / "run").string(),
+                         "--quiet", "--voxel-size",
+                         "0.02",    "--tracking",
+                         "forced",  "--no-pictures"};
+  ASSERT_EQ(run_program(coarse).status, 0);
+  const Arguments of_map{"segment", (folder_ / "run" / "map.sacmap").string(), "--json", "-"};
+  const Outcome outcome = run_program(of_map);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json result = outcome.json().at("result");
+  EXPECT_EQ(result.at("parameters").at("voxel_size_m"), 0.02);
+  EXPECT_DOUBLE_EQ(result.at("parameters").at("seed_size_m").get<double>(), 0.08);
+  EXPECT_LT(20 * result.at("segments").size(), result.at("points").get<std::size_t>());
+  EXPECT_EQ(outcome.err.find("touch"), std::string::npos) << outcome.err;
+  const Outcome fine = run_program(of_map + Arguments{"--voxel-size", "0.005"});
+  EXPECT_NE(fine.err.find("those of the map 0.02 m"), std::string::npos) << fine.err;
+  EXPECT_EQ(fine.err.find("coordinates metres"), std::string::npos) << fine.err;
+  expect_failure(run_program(of_map + Arguments{"--seed-size", "0.01", "--quiet"}), 3, "segment", {"--seed-size"});
 }
 
 }  // namespace

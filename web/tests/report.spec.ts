@@ -4,7 +4,7 @@ import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { expect, type Page, test } from "@playwright/test";
-import { benchmark, cell, comparison, exploration, faults, filtered, partsOfPage, segments, tables, update, writeReport } from "./support/report";
+import { armBenchmark, benchmark, cell, comparison, exploration, faults, filtered, manyStrategies, partsOfPage, segments, tables, update, writeReport } from "./support/report";
 
 let folder = "";
 test.beforeEach(() => void (folder = mkdtempSync(join(tmpdir(), "saccade-report-"))));
@@ -75,15 +75,79 @@ test("a benchmark has ours and published figures in one table", async ({ page })
   const { record, details } = benchmark();
   const wrong = await open(page, writeReport(folder, record, [], details));
   const rows = page.locator("#benchmark tbody tr");
-  await expect(rows).toHaveCount(2);
-  await expect(rows.nth(0)).toContainText("99.0 ± 1.0");
-  await expect(rows.nth(0)).toContainText("this run");
-  await expect(rows.nth(1)).toContainText("12.2");
-  await expect(rows.nth(1)).toContainText("93.1");
-  await expect(rows.nth(1)).toContainText("year not known, a survey; mean over its objects");
+  await expect(rows).toHaveCount(3);
+  await expect(rows.nth(0).locator("th, td")).toHaveText(["surface", "12", "11.5", "99.0 ± 1.0", "97.2 ± 1.0", "", "this run", ""]);
+  await expect(rows.nth(2)).toContainText("12.2");
+  await expect(rows.nth(2)).toContainText("93.1");
+  await expect(rows.nth(2)).toContainText("year not known, a survey; mean over its objects");
   await expect(page.locator("#benchmark")).toContainText("Stand-ins: these objects are made by rule");
+  await expect(page.locator("#benchmark")).not.toContainText("runs so far");
   expect(wrong).toEqual([]);
 });
+
+test("a benchmark says beside every published figure, first of those that it is short of", async ({ page }) => {
+  const { record, details } = benchmark();
+  await open(page, writeReport(folder, record, [], details));
+  const lines = (await page.locator(".summary-text").innerText()).split("\n");
+  expect(lines.map((line) => /short of it|not below it/.exec(line)?.[0])).toEqual(["short of it", "not below it"]);
+  expect(lines[0]).toMatch(/\.$/);
+});
+
+test("the table of a benchmark shows all its columns on a page of 1200 px", async ({ page }) => {
+  await page.setViewportSize({ width: 1200, height: 800 });
+  const { record, details } = benchmark();
+  await open(page, writeReport(folder, record, [], details));
+  const hidden = await page.locator("#benchmark .table-scroll").evaluate((element) => element.scrollWidth - element.clientWidth);
+  expect(hidden).toBe(0);
+  await expect(page.locator("#benchmark thead th").last()).toHaveText(/what differs/);
+});
+
+test("a benchmark that was interrupted says so, and what its table is over", async ({ page }) => {
+  const { record, details } = benchmark();
+  const result = record.result["benchmark"] as { [key: string]: unknown };
+  Object.assign(result, { complete: false, runs: { planned: 16, done: 13, each_strategy: 6 }, beside_published: [] });
+  record.result["runs"] = { planned: 16, done: 13 };
+  await open(page, writeReport(folder, record, [], details));
+  await expect(page.locator("#benchmark")).toContainText("13 of 16 runs so far. The table has 6 runs of each strategy");
+  await expect(page.locator(".summary-text")).toContainText("13 of 16 runs");
+  await expect(page.locator("body")).not.toContainText("not below it");
+});
+
+test("a benchmark on an arm has intervals of path and motion", async ({ page }) => {
+  const { record, details } = armBenchmark();
+  await open(page, writeReport(folder, record, [], details));
+  await expect(page.locator("#benchmark tbody tr").locator("th, td")).toHaveText(["surface", "5", "97.0 ± 1.1", "7.13 ± 0.34", "8.5 ± 0.2", "this run"]);
+  await expect(page.locator("#benchmark thead th")).toHaveCount(6); // nothing is published that would differ
+});
+
+for (const strategies of [2, 6, 12]) {
+  test(`the names below the bars of ${strategies} strategies do not overlap`, async ({ page }) => {
+    await page.setViewportSize({ width: 1200, height: 800 });
+    const { record, details } = manyStrategies(strategies);
+    await open(page, writeReport(folder, record, [], details));
+    const bars = page.getByRole("img", { name: /^Time per phase/ }).first();
+    await bars.scrollIntoViewIfNeeded();
+    const names = bars.locator("[aria-label^='x-axis tick label'] text");
+    await expect(names).toHaveCount(strategies);
+    // Along the line of the names: how far apart they are, and how high one is.
+    const { gaps, outside } = await names.evaluateAll((elements) => {
+      const texts = elements as unknown as SVGTextElement[];
+      const places = texts.map((text) => text.getScreenCTM()!);
+      const own = texts.map((text) => text.getBBox());
+      const across = (i: number) => {
+        const [a, b] = [places[i]!, places[i + 1]!];
+        const turn = Math.atan2(a.b, a.a);
+        const [along, beside] = [(b.e - a.e) * Math.cos(turn) + (b.f - a.f) * Math.sin(turn), Math.abs((b.f - a.f) * Math.cos(turn) - (b.e - a.e) * Math.sin(turn))];
+        return turn === 0 ? along - (own[i]!.width + own[i + 1]!.width) / 2 : beside - own[i]!.height;
+      };
+      const card = texts[0]!.closest("figure")!.getBoundingClientRect();
+      const boxes = texts.map((text) => text.getBoundingClientRect());
+      return { gaps: texts.slice(1).map((_, i) => across(i)), outside: boxes.filter((box) => box.left < card.left || box.bottom > card.bottom || box.right > card.right).length };
+    });
+    expect(Math.min(...gaps)).toBeGreaterThan(0);
+    expect(outside).toBe(0);
+  });
+}
 
 test("the cells of reproduced tables are shown with their own drawings", async ({ page }) => {
   const { record, pictures } = tables();

@@ -66,9 +66,9 @@ IkRedundancy InverseKinematics::redundancy() const {
 bool InverseKinematics::refines() const { return solvers_->closed_form && !solvers_->closed_form->is_exact(); }
 
 void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference, Configuration near,
-                               std::vector<Configuration>& solutions) const {
+                               int max_turns, std::vector<Configuration>& solutions) const {
   if (!meets(camera_pose(*arm_, near), T_world_camera) && !refine(*arm_, T_world_camera, near)) return;
-  append_turns(*arm_, near, reference, max_turns_, solutions);
+  append_turns(*arm_, near, reference, max_turns, solutions);
 }
 
 void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference,
@@ -80,11 +80,21 @@ void InverseKinematics::append(const Pose& T_world_camera, const Configuration& 
   }
   for (std::size_t round = 0; round < form->rounds(); ++round) {
     const ClosedForm::Solutions found = form->solve(T_world_camera, reference, round);
-    for (std::size_t i = 0; i < found.count; ++i) append(T_world_camera, reference, found.q[i], solutions);
+    for (std::size_t i = 0; i < found.count; ++i) append(T_world_camera, reference, found.q[i], max_turns_, solutions);
   }
 }
 
 bool InverseKinematics::any_of(const Pose& T_world_camera, const Configuration& reference,
+                               const std::function<bool(const Configuration&)>& passes) const {
+  return any_of(T_world_camera, reference, max_turns_, passes);
+}
+
+bool InverseKinematics::any_shape_of(const Pose& T_world_camera, const Configuration& reference,
+                                     const std::function<bool(const Configuration&)>& passes) const {
+  return any_of(T_world_camera, reference, 1, passes);
+}
+
+bool InverseKinematics::any_of(const Pose& T_world_camera, const Configuration& reference, int max_turns,
                                const std::function<bool(const Configuration&)>& passes) const {
   SACCADE_EXPECTS(reference.size() == arm_->dof());
   const auto& form = solvers_->closed_form;
@@ -97,7 +107,7 @@ bool InverseKinematics::any_of(const Pose& T_world_camera, const Configuration& 
     const ClosedForm::Solutions found = form->solve(T_world_camera, reference, round);
     for (std::size_t i = 0; i < found.count; ++i) {
       turns.clear();
-      append(T_world_camera, reference, found.q[i], turns);
+      append(T_world_camera, reference, found.q[i], max_turns, turns);
       if (std::any_of(turns.begin(), turns.end(), std::cref(passes))) return true;
     }
   }

@@ -107,6 +107,10 @@ class InverseKinematics {
   /// needed.
   [[nodiscard]] bool any_of(const Pose& T_world_camera, const Configuration& reference,
                             const std::function<bool(const Configuration&)>& passes) const;
+  /// The same for what depends on the arm's shape alone, such as collisions: of solutions that differ by whole turns of
+  /// joints, which can be 128 with seven joints of ±2π, only the one nearest to the reference is tried (closed form).
+  [[nodiscard]] bool any_shape_of(const Pose& T_world_camera, const Configuration& reference,
+                                  const std::function<bool(const Configuration&)>& passes) const;
 
   /// Calls solve() for many poses. The thread count never changes a bit of the result.
   [[nodiscard]] IkTable solve_all(std::span<const Pose> T_world_camera, const Configuration& reference,
@@ -115,8 +119,10 @@ class InverseKinematics {
  private:
   struct Solvers;
   InverseKinematics(std::shared_ptr<const ArmModel> arm, int max_turns) : arm_{std::move(arm)}, max_turns_{max_turns} {}
+  [[nodiscard]] bool any_of(const Pose& T_world_camera, const Configuration& reference, int max_turns,
+                            const std::function<bool(const Configuration&)>& passes) const;
   /// Appends a solution, refined where necessary, in every whole turn requested.
-  void append(const Pose& T_world_camera, const Configuration& reference, Configuration near,
+  void append(const Pose& T_world_camera, const Configuration& reference, Configuration near, int max_turns,
               std::vector<Configuration>& solutions) const;
   void append(const Pose& T_world_camera, const Configuration& reference, std::vector<Configuration>& solutions) const;
 

@@ -2,7 +2,9 @@
 #include "saccade/arm/reachability.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace saccade {
 namespace {
@@ -20,6 +22,17 @@ Result<ArmModel> without_limits(const ArmModel& arm) {
 /// link.
 bool is_of_pose(const ArmModel& arm, const Contact& contact) {
   return contact.link == arm.dof() && !contact.other_link;
+}
+
+/// Tells whether the arm has the same shape in both, its joints turned by whole turns.
+bool is_same_shape(const ArmModel& arm, const Configuration& a, const Configuration& b) {
+  constexpr double kSame{1e-9};
+  for (int i = 0; i < arm.dof(); ++i) {
+    const double apart = a[i] - b[i];
+    const bool turns = arm.joint(i).kind != JointKind::prismatic;
+    if (std::fabs(turns ? std::remainder(apart, 2.0 * std::numbers::pi) : apart) > kSame) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -40,7 +53,13 @@ PoseGoals Reachability::goals(const Pose& T_world_camera, const Configuration& r
                               const ObstacleMap& obstacles) const {
   std::vector<Configuration> solutions = ik_.solve(T_world_camera, reference);
   if (solutions.empty()) return {{}, why_none(T_world_camera)};
-  std::erase_if(solutions, [&](const Configuration& q) { return collision_.contact(q, obstacles).has_value(); });
+  std::optional<Configuration> last;  // solutions that differ by whole turns follow each other
+  bool collides = false;
+  std::erase_if(solutions, [&](const Configuration& q) {
+    if (!last || !is_same_shape(arm(), *last, q)) collides = collision_.contact(q, obstacles).has_value();
+    last = q;
+    return collides;
+  });
   if (solutions.empty()) return {{}, Refusal::goal_in_collision};
   return {std::move(solutions), std::nullopt};
 }
@@ -60,7 +79,7 @@ std::vector<std::optional<Refusal>> Reachability::test(std::span<const Pose> T_w
         free = !contact;
         return free || is_of_pose(arm(), *contact);
       };
-      static_cast<void>(ik_.any_of(T_world_camera[i], reference, std::cref(settles)));
+      static_cast<void>(ik_.any_shape_of(T_world_camera[i], reference, std::cref(settles)));
       if (free) continue;
       refusals[i] = any ? Refusal::goal_in_collision : why_none(T_world_camera[i]);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <limits>
 #include <mutex>
@@ -85,18 +86,28 @@ class ProgramJoints::Drive {
 
   [[nodiscard]] Result<JointArrival> follow() {
     SACCADE_CHECK(process().write_line(request_, follow_request(number_, trajectory_)));
+    process().on_failure(stop_request(joints_.asked_));
+    Result<JointArrival> end = watch_over();
+    process().on_failure({});
+    return end;
+  }
+
+  [[nodiscard]] Result<JointArrival> watch_over() {
     Stopwatch silence;
     const Stopwatch since_start;
     for (;;) {
-      SACCADE_TRY(const auto line, process().next_line(request_, kWatchStep));
-      if (line) {
+      const auto line = process().next_line(request_, kWatchStep);
+      if (!line) return told_to_stop(line.error());
+      if (*line) {
         silence = Stopwatch{};
-        SACCADE_TRY(const bool done, take(*line, 1e-3 * since_start.elapsed_ms()));
+        SACCADE_TRY(const bool done, take(**line, 1e-3 * since_start.elapsed_ms()));
         if (done) return JointArrival{q_};
       }
       if (asked_to_stop()) return stop();
       if (1e-3 * silence.elapsed_ms() > config_.watchdog_s) {
-        return give_up("it has said nothing for " + std::to_string(silence.elapsed_ms()) + " ms on the way");
+        return give_up("it has said nothing for " + std::to_string(std::lround(silence.elapsed_ms())) +
+                       " ms on the way, where its watchdog allows " +
+                       std::to_string(std::lround(1e3 * config_.watchdog_s)));
       }
       if (request_.left_ms() == 0) return give_up("the motion takes much longer than it was planned");
     }
@@ -144,6 +155,7 @@ class ProgramJoints::Drive {
   [[nodiscard]] Result<JointArrival> stop() {
     const std::size_t number = joints_.asked_++;
     const Request request{"stop " + std::to_string(number), kStopTimeout_s};
+    process().on_failure({});  // it is told here
     SACCADE_CHECK(process().interject(request, stop_request(number)));
     for (;;) {
       SACCADE_TRY(const auto line, process().next_line(request, kWatchStep));
@@ -163,7 +175,11 @@ class ProgramJoints::Drive {
   [[nodiscard]] Error give_up(const Error& error) {
     const bool stopped = stop().ok();
     Error fault = process().refused(request_, error);
-    fault.message += stopped ? "; the arm was told to stop, and has" : "; the arm was told to stop";
+    return stopped ? Error{fault.code, fault.message + "; the arm was told to stop, and has", fault.context}
+                   : told_to_stop(std::move(fault));
+  }
+  [[nodiscard]] static Error told_to_stop(Error fault) {
+    fault.message += "; the arm was told to stop";
     return fault;
   }
   [[nodiscard]] Error give_up(const std::string& what) { return give_up(Error{Errc::io_failure, what, {}}); }

@@ -18,6 +18,7 @@ constexpr Rgb8 kBackground{255, 255, 255};
 constexpr Rgb8 kPoiColor{214, 28, 92};
 constexpr Rgb8 kLabelColor{20, 20, 24};
 constexpr Rgb8 kGaussianColor{150, 156, 168};
+constexpr double kNumberSize_px{13.0};
 
 /// Three ellipses through the principal axes at two standard deviations.
 void draw_gaussian(Canvas& canvas, const DrawnGaussian& gaussian) {
@@ -41,6 +42,44 @@ void draw_way(Canvas& canvas, std::span<const HandSample> trajectory, double sta
     const double share = (trajectory[i].time_s - start_s) / duration_s;
     canvas.line(trajectory[i - 1].position_m, trajectory[i].position_m, {depth_colors()(share), 2.2, 1.0});
   }
+}
+
+/// A point that falls so many pixels above another in the picture.
+Eigen::Vector3d above(const Canvas& canvas, const Eigen::Vector3d& p_world, double pixels) {
+  const Viewpoint& view = canvas.view();
+  const Eigen::Vector3d up = -view.T_world_camera.linear().col(1);
+  const double depth_m = (view.T_world_camera.inverse() * p_world).z();
+  return p_world + pixels * depth_m / view.camera.fy * up;
+}
+
+/// Numbers of actions, at the place of the first of them.
+struct NumberLabel {
+  Eigen::Vector3d p_world;
+  Eigen::Vector2d at_px;
+  std::string numbers;
+};
+
+/// One label for each action that is in the picture; where labels would lie on each other, one for all: "1, 2".
+std::vector<NumberLabel> number_labels(const Canvas& canvas, std::span<const HandAction> actions) {
+  constexpr double kDigit_px{0.7 * kNumberSize_px};
+  std::vector<NumberLabel> labels;
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    const auto at_px = canvas.project(actions[i].position_m);
+    if (!at_px) continue;
+    const std::string number = std::to_string(i + 1);
+    const auto touches = [&](const NumberLabel& other) {
+      const Eigen::Vector2d apart_px = (*at_px - other.at_px).cwiseAbs();
+      const double widths_px = kDigit_px * static_cast<double>(number.size() + other.numbers.size());
+      return apart_px.x() < 0.5 * widths_px + kDigit_px && apart_px.y() < 1.2 * kNumberSize_px;
+    };
+    const auto beside = std::find_if(labels.begin(), labels.end(), touches);
+    if (beside == labels.end()) {
+      labels.push_back({actions[i].position_m, *at_px, number});
+    } else {
+      beside->numbers += ", " + number;
+    }
+  }
+  return labels;
 }
 
 }  // namespace
@@ -75,7 +114,9 @@ AttentionLegend draw_attention(Canvas& canvas, std::span<const HandSample> traje
     const Eigen::Vector3d& p = findings.actions[i].position_m;
     canvas.outline(Region{Sphere{p, region_radius_m}}, {kPoiColor, 1.0, 0.4});
     canvas.point(p, 9.0, kPoiColor, 0.7);
-    canvas.label(p, std::to_string(i + 1), kPoiColor, 13.0);
+  }
+  for (const NumberLabel& label : number_labels(canvas, findings.actions)) {
+    canvas.label(above(canvas, label.p_world, kNumberSize_px), label.numbers, kPoiColor, kNumberSize_px);
   }
   if (!findings.actions.empty()) legend.entries.push_back({kPoiColor, "points of interest and their regions"});
   return legend;

@@ -31,7 +31,7 @@ struct AttentionFindings {
   std::vector<DrawnGaussian> gaussians;
   std::vector<SmoothedPoint> motion;  ///< in which dips were looked for
   std::vector<Dip> dips;
-  std::vector<HandAction> actions;        ///< points of interest, numbered in their order
+  std::vector<HandAction> actions;  ///< points of interest, numbered in their order; numbers of near ones in one label
   std::vector<Eigen::Vector3d> labels_m;  ///< where the hand is known to have acted
 };
 

@@ -28,14 +28,17 @@ SceneObject slab(std::string name, const Vector3d& size_m, const Vector3d& at) {
   part.T_world_object.translation() = at;
   part.color = {205, 205, 198};
   part.support = true;
+  part.fixture = true;  // a camera that flies stays in the room
   return part;
 }
 
-void add_room(Scene& scene) {
+/// @param floor_m  height of the floor
+void add_room(Scene& scene, double floor_m) {
   constexpr double kThick_m{0.05};
   const double wide_m = 2.0 * (kWall_m + kThick_m);
   const double beside_m = kWall_m + 0.5 * kThick_m;
-  scene.objects.push_back(slab("floor", {wide_m, wide_m, kThick_m}, {0.0, 0.0, -kWall_m - kThick_m}));
+  const double bottom_m = -kWall_m - kThick_m;  // solid all the way down: there is no place under a table
+  scene.objects.push_back(slab("floor", {wide_m, wide_m, floor_m - bottom_m}, {0.0, 0.0, bottom_m}));
   scene.objects.push_back(slab("ceiling", {wide_m, wide_m, kThick_m}, {0.0, 0.0, kWall_m}));
   for (const double side : {-1.0, 1.0}) {
     const std::string which = side < 0.0 ? "-low" : "-high";
@@ -80,15 +83,15 @@ Result<Scene> scene_of(BenchmarkObject object, const Benchmark& benchmark, bool 
   scene.name = object.name;
   const double reach_m = std::max(0.15, bounds.max().cwiseAbs().maxCoeff() + 0.05);
   scene.workspace = Box{Vector3d::Constant(-reach_m), Vector3d::Constant(reach_m)};
-  if (benchmark.on_table) {
-    constexpr double kTable_m{1.0};
+  double floor_m = -kWall_m;
+  if (benchmark.on_table) {  // a table as wide as the room, so that a camera that flies stays above it
     constexpr double kAround_m{
         0.15};  // table in the workspace beside the object, so that it is found as the objects' support
+    floor_m = bounds.min().z();
     const double beside_m = reach_m + kAround_m;
-    scene.workspace = Box{{-beside_m, -beside_m, bounds.min().z() - 0.03}, {beside_m, beside_m, reach_m}};
-    scene.objects.push_back(slab("table", {kTable_m, kTable_m, 0.04}, {0.0, 0.0, bounds.min().z() - 0.04}));
+    scene.workspace = Box{{-beside_m, -beside_m, floor_m - 0.03}, {beside_m, beside_m, reach_m}};
   }
-  add_room(scene);
+  add_room(scene, floor_m);
   for (std::size_t i = 0; i < object.bodies.size(); ++i) {
     SceneObject body;
     body.name = "body-" + std::to_string(i + 1);

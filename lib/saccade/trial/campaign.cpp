@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/trial/internal/campaign_schema.hpp"
@@ -153,11 +154,15 @@ Result<ViewRecord> view_of(SqliteStatement& row) {
   return view;
 }
 
-Result<std::vector<ViewRecord>> views_of(const SqliteFile& file, std::int64_t run) {
+/// Statement for views_of.
+Result<SqliteStatement> prepare_views(const SqliteFile& file) {
+  return SqliteStatement::prepare(
+      file, std::string{"SELECT T_world_camera, "} + kReadViewColumns + " FROM views WHERE run = ? ORDER BY number");
+}
+
+Result<std::vector<ViewRecord>> views_of(SqliteStatement& row, std::int64_t run) {
   std::vector<ViewRecord> views;
-  SACCADE_TRY(SqliteStatement row,
-              SqliteStatement::prepare(file, std::string{"SELECT T_world_camera, "} + kReadViewColumns +
-                                                 " FROM views WHERE run = ? ORDER BY number"));
+  row.restart();
   row.bind(run);
   while (true) {
     SACCADE_TRY(const bool more, row.step());
@@ -170,9 +175,8 @@ Result<std::vector<ViewRecord>> views_of(const SqliteFile& file, std::int64_t ru
   }
 }
 
-/// Reads the run of the statement's row, but for its views.
-Result<CampaignEntry> run_of(SqliteStatement& row, std::int64_t& id) {
-  CampaignEntry entry;
+/// Reads the run of the statement's row, but for its views; the key also where the rest cannot be read.
+Status run_of(SqliteStatement& row, std::int64_t& id, CampaignEntry& entry) {
   id = row.integer();
   entry.key.scene = row.text();
   entry.key.scene_hash = row.text();
@@ -191,13 +195,25 @@ Result<CampaignEntry> run_of(SqliteStatement& row, std::int64_t& id) {
   SACCADE_TRY(entry.run.scan.refused, refusals_of(row));
   SACCADE_TRY(entry.run.refused_at_end, refusals_of(row));
   entry.run.scan.measures = measures_of(row);
-  return entry;
+  return {};
 }
 
-Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
+/// Returns the error of a run's row, with the run and the file; one that names the file stays as it is.
+Error run_error(Error error, const CampaignKey& key, const std::filesystem::path& path) {
+  if (error.context == path.string()) return error;
+  error.message = "cannot read the run " + key.scene + ", " + key.strategy + ", " + key.noise + ", seed " +
+                  std::to_string(key.seed) + ": " + error.message;
+  return in_file(std::move(error), path);
+}
+
+/// @param views  of prepare_views()
+Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row, SqliteStatement& views) {
   std::int64_t id = 0;
-  SACCADE_TRY(CampaignEntry entry, run_of(row, id));
-  SACCADE_TRY(entry.run.views, views_of(file, id));
+  CampaignEntry entry;
+  if (const Status read = run_of(row, id, entry); !read) return run_error(read.error(), entry.key, file.path());
+  Result<std::vector<ViewRecord>> taken = views_of(views, id);
+  if (!taken) return run_error(taken.error(), entry.key, file.path());
+  entry.run.views = std::move(*taken);
   return entry;
 }
 
@@ -250,18 +266,30 @@ Result<std::optional<CampaignEntry>> Campaign::find(const CampaignKey& key) cons
   bind(row, key);
   SACCADE_TRY(const bool found, row.step());
   if (!found) return std::optional<CampaignEntry>{};
-  SACCADE_TRY(CampaignEntry entry, entry_of(file_, row));
+  SACCADE_TRY(SqliteStatement views, prepare_views(file_));
+  SACCADE_TRY(CampaignEntry entry, entry_of(file_, row, views));
   return std::optional{std::move(entry)};
 }
 
 Result<std::vector<CampaignEntry>> Campaign::runs() const {
   std::vector<CampaignEntry> runs;
   SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file_, std::string{kSelectRuns} + "ORDER BY id"));
+  SACCADE_TRY(SqliteStatement views, prepare_views(file_));
   while (true) {
     SACCADE_TRY(const bool more, row.step());
     if (!more) return runs;
-    SACCADE_TRY(CampaignEntry entry, entry_of(file_, row));
+    SACCADE_TRY(CampaignEntry entry, entry_of(file_, row, views));
     runs.push_back(std::move(entry));
+  }
+}
+
+Status Campaign::parse_all() const {
+  SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file_, std::string{kSelectRuns} + "ORDER BY id"));
+  SACCADE_TRY(SqliteStatement views, prepare_views(file_));
+  while (true) {
+    SACCADE_TRY(const bool more, row.step());
+    if (!more) return {};
+    SACCADE_CHECK(entry_of(file_, row, views));
   }
 }
 
@@ -277,12 +305,14 @@ Result<std::vector<CampaignEntry>> Campaign::figures(const std::function<bool(co
     SACCADE_TRY(const bool more, row.step());
     if (!more) return runs;
     std::int64_t id = 0;
-    SACCADE_TRY(CampaignEntry entry, run_of(row, id));
+    CampaignEntry entry;
+    if (const Status read = run_of(row, id, entry); !read) return run_error(read.error(), entry.key, path());
     const bool chosen = wanted(entry.key);
     while (has_view && of_view <= id) {
       if (chosen && of_view == id) {
-        SACCADE_TRY(ViewRecord read, view_of(view));
-        entry.run.views.push_back(std::move(read));
+        Result<ViewRecord> read = view_of(view);
+        if (!read) return run_error(read.error(), entry.key, path());
+        entry.run.views.push_back(std::move(*read));
       }
       SACCADE_TRY(has_view, view.step());
       of_view = has_view ? view.integer() : 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reading other campaigns' files, and adding their runs.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "saccade/trial/campaign.hpp"
@@ -25,6 +26,92 @@ constexpr std::string_view kAllViewColumns{
 
 constexpr const char* kStored{
     "SELECT scene, scene_hash, strategy, noise, seed, settings, views, program_version FROM runs ORDER BY id"};
+
+/// A run whose measures at the end are not those of its last view (of the scan, where it has none), or whose views are
+/// not all there. Both are written once, with the run.
+constexpr const char* kDisagreeing{R"sql(
+SELECT scene, strategy, noise, seed FROM
+  (SELECT runs.*, count(views.run) AS there, min(views.number) AS first, max(views.number) AS last FROM runs
+   LEFT JOIN views ON views.run = runs.id GROUP BY runs.id) AS r
+LEFT JOIN views AS v ON v.run = r.id AND v.number = r.last
+WHERE r.there <> r.views OR r.views <> ifnull(r.last, 0) OR ifnull(r.first, 1) <> 1
+  OR r.coverage IS NOT iif(r.views = 0, r.initial_coverage, v.coverage)
+  OR r.unknown_left IS NOT iif(r.views = 0, r.initial_unknown_left, v.unknown_left)
+  OR r.unknown_near_objects IS NOT iif(r.views = 0, r.initial_unknown_near_objects, v.unknown_near_objects)
+  OR r.accuracy_m IS NOT iif(r.views = 0, r.initial_accuracy_m, v.accuracy_m)
+  OR r.chamfer_m IS NOT iif(r.views = 0, r.initial_chamfer_m, v.chamfer_m)
+  OR r.f_score IS NOT iif(r.views = 0, r.initial_f_score, v.f_score)
+LIMIT 1)sql"};
+
+/// Columns of one table, with what their values must not be; %s stands for the column.
+struct ColumnRule {
+  const char* wrong;
+  std::vector<const char*> columns;
+};
+
+constexpr const char* kNotText{"typeof(%s) <> 'text'"};
+constexpr const char* kNoCount{"typeof(%s) <> 'integer' OR %s < 0"};
+constexpr const char* kNotFinite{"typeof(%s) NOT IN ('real', 'integer') OR abs(%s) > 1.7976931348623157e308"};
+constexpr const char* kNoShare{"typeof(%s) NOT IN ('real', 'integer') OR %s NOT BETWEEN 0 AND 1"};
+constexpr const char* kNeitherNullNorFinite{
+    "typeof(%s) NOT IN ('real', 'integer', 'null') OR abs(%s) > 1.7976931348623157e308"};
+
+std::vector<ColumnRule> rules_of_runs() {
+  return {{kNotText,
+           {"scene", "scene_hash", "strategy", "noise", "settings", "stopped_because", "program_version", "finished_at",
+            "scan_refused", "refused_at_end"}},
+          {kNoCount,
+           {"seed", "views", "scan_views", "initial_unknown_left", "initial_unknown_near_objects", "unknown_left",
+            "unknown_near_objects"}},
+          {kNotFinite, {"seconds"}},
+          {kNoShare, {"initial_coverage", "coverage"}},
+          {kNeitherNullNorFinite,
+           {"initial_accuracy_m", "initial_chamfer_m", "initial_f_score", "accuracy_m", "chamfer_m", "f_score"}}};
+}
+
+std::vector<ColumnRule> rules_of_views() {
+  return {{kNotText, {"T_world_camera", "refused"}},
+          {kNoCount,
+           {"number", "region", "candidates", "evaluated", "frames", "points_at_object", "looks_at_object",
+            "unknown_left", "unknown_near_objects"}},
+          {kNotFinite,
+           {"path_m", "motion_s", "planner_map_ms", "candidates_ms", "segmentation_ms", "saliency_ms",
+            "reachability_ms", "evaluation_ms", "planning_ms", "motion_ms", "fusion_ms"}},
+          {kNoShare, {"coverage"}},
+          {kNeitherNullNorFinite, {"gain", "gain_observed", "accuracy_m", "chamfer_m", "f_score"}}};
+}
+
+std::string with_column(std::string rule, const std::string& column) {
+  constexpr std::string_view kHere{"%s"};
+  for (std::size_t at = 0; (at = rule.find(kHere, at)) != std::string::npos; at += column.size()) {
+    rule.replace(at, kHere.size(), column);
+  }
+  return rule;
+}
+
+/// "CASE WHEN … THEN 'coverage' … END": the name of the first column whose value is wrong; NULL where all are right.
+std::string wrong_column(const std::string& table, const std::vector<ColumnRule>& rules) {
+  std::string text{"CASE"};
+  for (const ColumnRule& rule : rules) {
+    for (const char* column : rule.columns) {
+      text += " WHEN " + with_column(rule.wrong, table + '.' + column) + " THEN '" + column + '\'';
+    }
+  }
+  return text + " END";
+}
+
+/// The first wrong value of a table, with its run.
+std::string select_wrong(const std::string& wrong, const std::string& from) {
+  return "SELECT scene, strategy, noise, seed, " + wrong + " AS wrong FROM " + from +
+         " WHERE wrong IS NOT NULL LIMIT 1";
+}
+
+const std::array<std::string, 2>& wrong_values() {
+  static const std::array<std::string, 2> kQueries{
+      select_wrong(wrong_column("runs", rules_of_runs()), "runs"),
+      select_wrong(wrong_column("views", rules_of_views()), "views JOIN runs ON runs.id = views.run")};
+  return kQueries;
+}
 
 std::size_t count_of(std::string_view columns) {
   return static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ',')) + 1;
@@ -80,6 +167,30 @@ std::string name_of(const CampaignKey& key) {
   return key.scene + ", " + key.strategy + ", " + key.noise + ", seed " + std::to_string(key.seed);
 }
 
+/// Reads scene, strategy, noise and seed, the next columns of a row.
+std::string next_name(SqliteStatement& row) {
+  CampaignKey key;
+  key.scene = row.text();
+  key.strategy = row.text();
+  key.noise = row.text();
+  key.seed = static_cast<std::uint64_t>(row.integer());
+  return name_of(key);
+}
+
+Status check_values(const SqliteFile& file) {
+  for (const std::string& query : wrong_values()) {
+    SACCADE_TRY(SqliteStatement wrong, SqliteStatement::prepare(file, query));
+    SACCADE_TRY(const bool found, wrong.step());
+    if (!found) continue;
+    const std::string name = next_name(wrong);
+    return Error{Errc::corrupt_data,
+                 "holds a value of " + wrong.text() + " that the run " + name +
+                     " cannot have; it was changed or damaged: move it away, and do its runs again",
+                 file.path().string()};
+  }
+  return {};
+}
+
 /// Copies the views of one run.
 class ViewCopy {
  public:
@@ -132,20 +243,36 @@ Result<Campaign> Campaign::open_to_read(const std::filesystem::path& path) {
   }
   SACCADE_TRY(SqliteFile file, SqliteFile::open_existing(path, kCampaignBusy_ms));
   SACCADE_TRY(const bool made, has_campaign_tables(file));
-  static_cast<void>(made);
-  return Campaign{std::move(file)};
+  return Campaign{std::move(file), made};
 }
 
 Status Campaign::check_whole() const {
   SACCADE_TRY(SqliteStatement check, SqliteStatement::prepare(file_, "PRAGMA quick_check(1)"));
   SACCADE_TRY(const bool row, check.step());
-  if (row && check.text() == "ok") return {};
-  return Error{Errc::corrupt_data, "is damaged or was cut short; move it away, and do its runs again", path().string()};
+  if (!row || check.text() != "ok") {
+    return Error{Errc::corrupt_data, "is damaged or was cut short; move it away, and do its runs again",
+                 path().string()};
+  }
+  if (!made_) return {};
+  SACCADE_CHECK(check_values(file_));
+  SACCADE_TRY(SqliteStatement disagreeing, SqliteStatement::prepare(file_, kDisagreeing));
+  SACCADE_TRY(const bool found, disagreeing.step());
+  if (!found) {
+    const Status read = parse_all();
+    if (read || read.error().code != Errc::corrupt_data) return read;
+    Error error = read.error();
+    error.message += "; the file was changed or damaged: move it away, and do its runs again";
+    return error;
+  }
+  return Error{
+      Errc::corrupt_data,
+      "holds other figures for the end of the run " + next_name(disagreeing) +
+          " than for its views, or lacks views; it was changed or damaged: move it away, and do its runs again",
+      path().string()};
 }
 
-Status Campaign::for_each_stored(const AcceptRun& take) const {
-  SACCADE_TRY(const bool made, has_campaign_tables(file_));
-  if (!made) return {};
+Status Campaign::for_each_stored(const TakeRun& take) const {
+  if (!made_) return {};
   SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file_, kStored));
   while (true) {
     SACCADE_TRY(const bool more, row.step());
@@ -155,30 +282,44 @@ Status Campaign::for_each_stored(const AcceptRun& take) const {
 }
 
 Status Campaign::take_runs(const Campaign& shard, const AcceptRun& accept, CampaignMerge& merged) const {
-  SACCADE_TRY(const bool made, has_campaign_tables(shard.file_));
-  if (!made) return {};
+  if (!shard.made_) return {};
   SACCADE_TRY(SqliteStatement read,
               SqliteStatement::prepare(shard.file_, select_text(kAllRunColumns, ", id FROM runs ORDER BY id")));
   SACCADE_TRY(SqliteStatement write, SqliteStatement::prepare(file_, insert_text("runs", std::string{kAllRunColumns})));
   SACCADE_TRY(ViewCopy views, ViewCopy::prepare(shard.file_, file_));
+  CampaignMerge here;
+  std::string why_not;  // of the first that is left out
   while (true) {
     SACCADE_TRY(const bool more, read.step());
-    if (!more) return {};
-    for (std::size_t i = 0; i < count_of(kAllRunColumns); ++i) write.bind_next_of(read);
-    const std::int64_t id = read.integer();
-    SACCADE_CHECK(write.run());
-    const bool added = file_.changed_rows() > 0;
-    const std::int64_t new_id = file_.last_row_id();
-    read.read_again();
+    if (!more) break;
     const StoredRun run = stored_of(read);
-    SACCADE_CHECK(added ? accept(run) : check_known(*this, shard, run.key));
-    if (added) SACCADE_CHECK(views.copy(id, new_id));
-    ++(added ? merged.added : merged.known);
+    SACCADE_TRY(const bool known, has(run.key));
+    if (known) {
+      SACCADE_CHECK(check_known(*this, shard, run.key));
+      ++here.known;
+      continue;
+    }
+    SACCADE_TRY(const MergeChoice choice, accept(run));
+    if (!choice.taken) {
+      if (here.left_out++ == 0) why_not = choice.why_not;
+      continue;
+    }
+    read.read_again();
+    for (std::size_t i = 0; i < count_of(kAllRunColumns); ++i) write.bind_next_of(read);
+    SACCADE_CHECK(write.run());
+    SACCADE_CHECK(views.copy(read.integer(), file_.last_row_id()));
+    ++here.added;
   }
+  if (here.left_out > 0 && here.added + here.known == 0) return Error{Errc::invalid_argument, why_not, {}};
+  merged.added += here.added;
+  merged.known += here.known;
+  merged.left_out += here.left_out;
+  return {};
 }
 
 Result<CampaignMerge> Campaign::merge(std::span<const std::filesystem::path> files, const AcceptRun& accept) const {
   CampaignMerge merged;
+  SACCADE_CHECK(file_.run("PRAGMA synchronous = EXTRA"));
   SACCADE_TRY(SqliteTransaction transaction, SqliteTransaction::begin(file_));
   for (const std::filesystem::path& path : files) {
     SACCADE_TRY(const Campaign shard, open_to_read(path));

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "saccade/core/fnv1a.hpp"
 #include "saccade/explore/baseline_planners.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/map/tsdf_map.hpp"
@@ -15,6 +16,15 @@
 
 namespace saccade {
 namespace {
+
+/// Where all scenes have the same candidates, chance differs by scene: else random views were one sequence for all.
+std::uint64_t seed_of_choices(const SimulatedRunConfig& config, const GroundTruth* truth) {
+  if (!config.fixed_views || truth == nullptr) return config.seed;
+  Fnv1a hash;
+  hash.add(config.seed);
+  for (const char letter : truth->scene().scene().name) hash.add(std::uint64_t{static_cast<unsigned char>(letter)});
+  return hash.value();
+}
 
 /// Returns the robot that carries the camera in run_simulated.
 Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRunConfig& config) {
@@ -112,7 +122,7 @@ ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& 
   setup.planner = config.planner;
   setup.regions = {regions.begin(), regions.end()};
   setup.max_views = static_cast<std::size_t>(config.exploration.max_views);
-  setup.seed = config.seed;
+  setup.seed = seed_of_choices(config, truth);
   setup.camera = camera;
   setup.truth = truth;
   PlannerParts parts = config.strategy.make(setup);

@@ -112,6 +112,7 @@ struct SurfaceCoverage::Data {
   PinholeCamera camera;
   CoverageRule rule;
   std::vector<Vector3d> points;       ///< samples of the surface
+  std::vector<Vector3d> normals;      ///< outward, per sample
   std::vector<std::uint32_t> part;    ///< per sample: its voxel, or itself
   std::vector<std::uint8_t> visible;  ///< per part
   std::size_t visible_count{0};
@@ -124,13 +125,14 @@ Result<SurfaceCoverage> SurfaceCoverage::build(const RayScene& scene, const Pinh
                                                const Executor& executor) {
   SACCADE_CHECK(rule.validate());
   SACCADE_CHECK(camera.validate());
-  Data data{scene, camera, rule, {}, {}, {}, 0, {}, {}};
+  Data data{scene, camera, rule, {}, {}, {}, {}, 0, {}, {}};
   for (const ObjectMesh& object : scene.meshes()) {
     if (object.support) continue;
     for (const Eigen::Vector3f& p : object.mesh.vertices) data.bounds.extend(p.cast<double>());
   }
   SACCADE_TRY(const SurfaceSamples samples, outer_surface(scene, rule.spacing_m, executor));
   for (const Eigen::Vector3f& point : samples.points) data.points.push_back(point.cast<double>());
+  for (const Eigen::Vector3f& normal : samples.normals) data.normals.push_back(normal.cast<double>());
   if (data.points.empty()) {
     return Error{Errc::invalid_argument, "there is no object whose surface could be measured", "surface coverage"};
   }
@@ -176,13 +178,15 @@ std::vector<CoverageShares> SurfaceCoverage::along(std::span<const Pose> views, 
     const auto cell = data.cells.find(voxel_at(p, data.rule.size_m));
     if (cell != data.cells.end()) mark(data.part[cell->second.front()]);
   };
-  const auto add_near = [&](const Vector3d& p) {
+  // A point on the far side of a thin wall lies near to what was measured, but nobody looked at it.
+  const auto add_near = [&](const Vector3d& p, const Vector3d& eye) {
     const Index3 middle = voxel_at(p, data.rule.size_m);
     IndexBox::cube(middle, 1).grown(1).for_each([&](const Index3& voxel) {
       const auto cell = data.cells.find(voxel);
       if (cell == data.cells.end()) return;
       for (const std::uint32_t i : cell->second) {
-        if (measured[i] == 0 && (data.points[i] - p).norm() <= data.rule.size_m) mark(i);
+        if (measured[i] != 0 || data.normals[i].dot(eye - data.points[i]) <= 0.0) continue;
+        if ((data.points[i] - p).norm() <= data.rule.size_m) mark(i);
       }
     });
   };
@@ -195,7 +199,7 @@ std::vector<CoverageShares> SurfaceCoverage::along(std::span<const Pose> views, 
         const int object = frame.object(u, v);
         if (object < 0 || data.scene.meshes()[static_cast<std::size_t>(object)].support) continue;
         const Vector3d p = view * (static_cast<double>(frame.depth(u, v)) * camera.ray(u, v));
-        data.rule.kind == CoverageRule::Kind::voxels ? add_voxel(p) : add_near(p);
+        data.rule.kind == CoverageRule::Kind::voxels ? add_voxel(p) : add_near(p, view.translation());
       }
     }
     const auto share = [](std::size_t part, std::size_t of) {

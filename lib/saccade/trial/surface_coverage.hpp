@@ -18,7 +18,7 @@ namespace saccade {
 struct CoverageRule {
   enum class Kind {
     voxels,    ///< a voxel that holds surface, once it holds a measured point
-    distance,  ///< a point of the surface, once a measured point is at most this far from it
+    distance,  ///< a point of the surface, once a view from its outer side measured a point at most this far from it
   };
   Kind kind{Kind::distance};
   double size_m{0.005};     ///< edge of a voxel, or the distance

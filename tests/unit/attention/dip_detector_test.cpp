@@ -128,6 +128,7 @@ TEST(DipDetector, NamesTheSampleThatIsNotUsable) {
     if (result) return;
     EXPECT_EQ(result.error().code, Errc::invalid_argument);
     EXPECT_EQ(result.error().context, "sample 17");
+    EXPECT_EQ(result.error().message.find("huge"), std::string::npos);
   };
   error_of({nan, {0, 0, 0}, {}});
   error_of({infinity, {0, 0, 0}, {}});

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "saccade/attention/dip_detector.hpp"
 #include "saccade/trial/simulated_task.hpp"
 #include "unit/report/pixels.hpp"
@@ -27,6 +29,31 @@ TEST(AttentionPicture, ShowsWhatThereIs) {
   const ColorImage found = attention_picture(task.trajectory, findings);
   EXPECT_EQ(test::count(labelled, kPoiColor), 0U);
   EXPECT_GT(test::count(found, kPoiColor), 200U);
+}
+
+TEST(AttentionPicture, NumbersOfNearActionsShareALabel) {
+  const SyntheticTask task = synthetic_task(1);
+  const auto with_actions = [&](std::size_t count) {
+    AttentionFindings findings;
+    findings.actions.assign(count, {task.actions_m.front(), 1.0, 1.0, {}});
+    AttentionPictureConfig config;
+    config.region_radius_m = 0.001;
+    return attention_picture(task.trajectory, findings, config);
+  };
+  const ColorImage one = with_actions(1);
+  const ColorImage four = with_actions(4);
+  ASSERT_EQ(one.width(), four.width());
+  ASSERT_EQ(one.height(), four.height());
+  int left = one.width();
+  int right = 0;
+  for (int v = 0; v < one.height(); ++v) {
+    for (int u = 0; u < one.width(); ++u) {
+      if (one(u, v) == four(u, v)) continue;
+      left = std::min(left, u);
+      right = std::max(right, u);
+    }
+  }
+  EXPECT_GT(right - left, 50);  // "1, 2, 3, 4"; digits on each other are 13 pixels wide at most
 }
 
 TEST(AttentionPicture, NothingAndASinglePointHaveAPicture) {

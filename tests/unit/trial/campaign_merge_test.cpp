@@ -18,7 +18,7 @@ using test::key_of;
 using test::run_of;
 using test::TempFolder;
 
-const AcceptRun kAll = [](const StoredRun&) { return Status{}; };
+const AcceptRun kAll = [](const StoredRun&) { return MergeChoice{}; };
 
 fs::path shard(const TempFolder& folder, const std::string& name, std::uint64_t first, std::uint64_t last) {
   const fs::path path = folder / name;
@@ -86,12 +86,104 @@ TEST(CampaignMerge, WhatCannotBeMergedLeavesTheCampaignAsItWas) {
   ASSERT_TRUE(SqliteFile::open(folder / "newer", 0)->run("PRAGMA user_version = 1"));
   refused(folder / "newer", Errc::unsupported, "older Saccade");
   const fs::path changed = shard(folder, "changed", 1, 2);
-  ASSERT_TRUE(SqliteFile::open(changed, 0)->run("UPDATE views SET coverage = coverage + 1e-9"));
+  ASSERT_TRUE(SqliteFile::open(changed, 0)
+                  ->run("UPDATE views SET coverage = coverage + 1e-9;"
+                        "UPDATE runs SET coverage = coverage + 1e-9"));
   refused(changed, Errc::invalid_argument, "seed 1 with other figures");
   refused(shard(folder, "odd", 20, 23), Errc::invalid_argument, "odd one", [](const StoredRun& run) {
-    return run.key.seed == 22 ? Status{Error{Errc::invalid_argument, "odd one", {}}} : Status{};
+    return run.key.seed == 22 ? Result<MergeChoice>{Error{Errc::invalid_argument, "odd one", {}}} : MergeChoice{};
   });
   EXPECT_EQ(campaign.merge(std::vector{good}, kAll)->added, 3U);
+}
+
+TEST(CampaignMerge, ValuesThatNoRunCanHaveAreNamedAndTheCampaignStays) {
+  const TempFolder folder;
+  const Campaign campaign = Campaign::open(folder / "campaign").value();
+  ASSERT_TRUE(*campaign.add(run_of(key_of(1))));
+  const std::string good = *read_text_file(shard(folder, "shard", 2, 3));
+  struct Spoiled {
+    std::string sql;
+    std::string part;
+  };
+  const std::vector<Spoiled> all{
+      {"UPDATE runs SET stopped_because = 'x'", "unknown reason to stop"},
+      {"UPDATE views SET T_world_camera = '[['", "cannot read the run jug, sphere, kinect-v1, seed 2"},
+      {"UPDATE views SET T_world_camera = '[1, 2]'", "cannot read the run"},
+      {"UPDATE runs SET refused_at_end = '{\"no_ik\": -1}'", "refusals"},
+      {"UPDATE runs SET scan_refused = '{'", "cannot read the run"},
+      {"UPDATE views SET refused = '7'", "refusals"},
+      {"UPDATE runs SET seconds = 'long' WHERE seed = 3", "seconds that the run jug, sphere, kinect-v1, seed 3"},
+      {"UPDATE runs SET seconds = 9e999", "value of seconds"},
+      {"UPDATE views SET path_m = x'00'", "value of path_m"},
+      {"UPDATE views SET gain = -9e999", "value of gain "},
+      {"UPDATE views SET candidates = -1", "value of candidates"},
+      {"UPDATE views SET coverage = 1.7", "value of coverage"},
+      {"UPDATE runs SET coverage = -0.1", "value of coverage"},
+      {"UPDATE runs SET initial_coverage = 'x'", "value of initial_coverage"},
+      {"UPDATE runs SET f_score = 'x'", "value of f_score"},
+      {"UPDATE runs SET seed = 'x' WHERE seed = 3", "value of seed"},
+      {"UPDATE runs SET scene = x'4a'", "value of scene"},
+      {"DELETE FROM views WHERE run = 1", "lacks views"},
+      {"DELETE FROM views WHERE number = 1", "lacks views"},
+      {"UPDATE views SET number = 0 WHERE number = 1", "lacks views"},
+      {"UPDATE views SET number = number + 10 WHERE run = 2", "lacks views"},
+      {"UPDATE runs SET views = 7", "lacks views"},
+      {"UPDATE runs SET coverage = coverage + 1e-9", "other figures for the end of the run"},
+      {"UPDATE runs SET unknown_left = 5", "other figures for the end of the run"},
+      {"UPDATE runs SET chamfer_m = NULL", "other figures for the end of the run"}};
+  for (const Spoiled& spoiled : all) {
+    folder.write("shard", good);
+    ASSERT_TRUE(SqliteFile::open(folder / "shard", 0)->run(spoiled.sql)) << spoiled.sql;
+    const auto merged = campaign.merge(std::vector{folder / "shard"}, kAll);
+    ASSERT_FALSE(merged) << spoiled.sql;
+    EXPECT_EQ(merged.error().code, Errc::corrupt_data) << spoiled.sql << ' ' << merged.error().to_string();
+    EXPECT_EQ(merged.error().context.find((folder / "shard").string()), 0U) << merged.error().to_string();
+    EXPECT_NE(merged.error().message.find(spoiled.part), std::string::npos) << merged.error().to_string();
+    EXPECT_EQ(campaign.runs()->size(), 1U);
+  }
+  folder.write("shard", good);
+  EXPECT_EQ(campaign.merge(std::vector{folder / "shard"}, kAll)->added, 2U);
+}
+
+TEST(CampaignMerge, RunsThatDoNotBelongAreLeftOutAndCounted) {
+  const TempFolder folder;
+  const Campaign campaign = Campaign::open(folder / "campaign").value();
+  const std::vector files{shard(folder, "a", 1, 4), shard(folder, "b", 5, 6)};
+  const AcceptRun odd = [](const StoredRun& run) {
+    return run.key.seed % 2 == 1 ? MergeChoice{} : MergeChoice{false, "even"};
+  };
+  const auto merged = campaign.merge(files, odd);
+  ASSERT_TRUE(merged) << merged.error().to_string();
+  EXPECT_EQ(merged->added, 3U);
+  EXPECT_EQ(merged->left_out, 3U);
+  EXPECT_EQ(campaign.find(key_of(2)).value(), std::nullopt);
+  test::expect_same(*campaign.find(key_of(3)).value(), run_of(key_of(3), 3));
+  const auto again = campaign.merge(files, odd);
+  EXPECT_EQ(again->known, 3U);
+  EXPECT_EQ(again->left_out, 3U);
+
+  // A file with nothing that belongs is an error, and what came before it is undone.
+  const auto refused = campaign.merge(std::vector{shard(folder, "c", 7, 7), shard(folder, "d", 8, 8)}, odd);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().to_string(), (folder / "d").string() + ": even");
+  EXPECT_EQ(campaign.runs()->size(), 3U);
+}
+
+TEST(CampaignMerge, WhatCannotBeReadNamesTheRunAndTheFile) {
+  const TempFolder folder;
+  const Campaign campaign = Campaign::open(folder / "campaign").value();
+  ASSERT_TRUE(*campaign.add(run_of(key_of(1))));
+  const auto expect_named = [&](const Error& error) {
+    EXPECT_EQ(error.code, Errc::corrupt_data);
+    EXPECT_NE(error.to_string().find(campaign.path().string()), std::string::npos) << error.to_string();
+    EXPECT_NE(error.to_string().find("the run jug, sphere, kinect-v1, seed 1"), std::string::npos) << error.to_string();
+  };
+  ASSERT_TRUE(SqliteFile::open(campaign.path(), 0)->run("UPDATE views SET refused = '['"));
+  expect_named(campaign.runs().error());
+  expect_named(campaign.find(key_of(1)).error());
+  expect_named(campaign.figures([](const CampaignKey&) { return true; }).error());
+  ASSERT_TRUE(SqliteFile::open(campaign.path(), 0)->run("UPDATE runs SET stopped_because = 'x'"));
+  expect_named(campaign.figures([](const CampaignKey&) { return false; }).error());
 }
 
 TEST(CampaignMerge, AFileThatWasCutShortIsFoundWhereverItWasCut) {

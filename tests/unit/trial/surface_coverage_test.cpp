@@ -51,13 +51,17 @@ std::vector<Vector3d> points_measured(const RayScene& scene, const Pose& view) {
   return points;
 }
 
-std::vector<Vector3d> object_samples(const RayScene& scene, double spacing_m) {
+SurfaceSamples object_samples(const RayScene& scene, double spacing_m) {
   std::vector<ObjectMesh> objects;
   for (const ObjectMesh& mesh : scene.meshes()) {
     if (!mesh.support) objects.push_back(mesh);
   }
+  return sample_surfaces(objects, spacing_m);
+}
+
+std::vector<Vector3d> object_points(const RayScene& scene, double spacing_m) {
   std::vector<Vector3d> points;
-  for (const Eigen::Vector3f& p : sample_surfaces(objects, spacing_m).points) points.push_back(p.cast<double>());
+  for (const Eigen::Vector3f& p : object_samples(scene, spacing_m).points) points.push_back(p.cast<double>());
   return points;
 }
 
@@ -80,7 +84,7 @@ TEST(SurfaceCoverage, CountsAsAPlainSearchDoesByDistance) {
   const Executor executor = Executor::with_threads(2);
   const auto surface = SurfaceCoverage::build(scene, kSmallCamera, kLookingViews, rule, executor);
   ASSERT_TRUE(surface) << surface.error().message;
-  const std::vector<Vector3d> samples = object_samples(scene, rule.spacing_m);
+  const std::vector<Vector3d> samples = object_points(scene, rule.spacing_m);
   ASSERT_EQ(surface->size(), samples.size());
   std::size_t visible = 0;
   for (const Vector3d& p : samples) visible += shown_by_any(scene, p, kLookingViews) ? 1 : 0;
@@ -89,17 +93,20 @@ TEST(SurfaceCoverage, CountsAsAPlainSearchDoesByDistance) {
 
   const std::vector<CoverageShares> shares = surface->along(kLookingViews, executor);
   ASSERT_EQ(shares.size(), kLookingViews.size());
-  std::vector<Vector3d> points;
+  const SurfaceSamples surfaces = object_samples(scene, rule.spacing_m);
+  std::vector<std::uint8_t> measured(samples.size());
   for (std::size_t k = 0; k < kLookingViews.size(); ++k) {
-    const std::vector<Vector3d> more = points_measured(scene, kLookingViews[k]);
-    points.insert(points.end(), more.begin(), more.end());
+    const std::vector<Vector3d> points = points_measured(scene, kLookingViews[k]);
+    const Vector3d eye = kLookingViews[k].translation();
     std::size_t all = 0;
     std::size_t seen = 0;
-    for (const Vector3d& p : samples) {
-      const bool near =
-          std::any_of(points.begin(), points.end(), [&](const Vector3d& q) { return (p - q).norm() <= rule.size_m; });
-      all += near ? 1 : 0;
-      seen += near && shown_by_any(scene, p, kLookingViews) ? 1 : 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vector3d& p = samples[i];
+      const auto is_near = [&](const Vector3d& q) { return (p - q).norm() <= rule.size_m; };
+      const bool faces = surfaces.normals[i].cast<double>().dot(eye - p) > 0.0;
+      if (faces && std::any_of(points.begin(), points.end(), is_near)) measured[i] = 1;
+      all += measured[i];
+      seen += measured[i] != 0 && shown_by_any(scene, p, kLookingViews) ? 1 : 0;
     }
     // The render rounds a depth to single precision; a point at the limit may fall on either side.
     EXPECT_NEAR(shares[k].of_all * static_cast<double>(samples.size()), static_cast<double>(all), 2.0) << k;
@@ -120,7 +127,7 @@ TEST(SurfaceCoverage, CountsAsAPlainSearchDoesByVoxels) {
   };
   std::set<std::array<double, 3>> all;
   std::set<std::array<double, 3>> visible;
-  for (const Vector3d& p : object_samples(scene, rule.spacing_m)) {
+  for (const Vector3d& p : object_points(scene, rule.spacing_m)) {
     all.insert(voxel_of(p));
     if (shown_by_any(scene, p, kLookingViews)) visible.insert(voxel_of(p));
   }
@@ -139,6 +146,24 @@ TEST(SurfaceCoverage, CountsAsAPlainSearchDoesByVoxels) {
     EXPECT_NEAR(shares[k].of_all * static_cast<double>(all.size()), static_cast<double>(measured.size()), slack) << k;
     EXPECT_NEAR(shares[k].of_visible * static_cast<double>(visible.size()), static_cast<double>(seen), slack) << k;
   }
+}
+
+TEST(SurfaceCoverage, DoesNotCountTheFarSideOfAThinWall) {
+  Scene made;
+  made.name = "sheet";
+  made.workspace = Box{{-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}};
+  made.objects = {placed("sheet", BoxShape{{0.004, 0.2, 0.2}}, {0.0, 0.0, -0.1})};
+  const auto scene = RayScene::build(made);
+  ASSERT_TRUE(scene);
+  const std::vector<Pose> views{look_at({-0.4, 0.0, 0.0}, Vector3d::Zero()),
+                                look_at({0.4, 0.0, 0.0}, Vector3d::Zero())};
+  const CoverageRule rule{CoverageRule::Kind::distance, 0.006, 0.004};
+  const Executor executor;
+  const auto surface = SurfaceCoverage::build(*scene, kSmallCamera, views, rule, executor);
+  ASSERT_TRUE(surface) << surface.error().message;
+  const std::vector<CoverageShares> shares = surface->along(views, executor);
+  EXPECT_NEAR(shares[0].of_all, 0.5, 0.06);  // its far side lies 4 mm behind what was measured
+  EXPECT_GT(shares[1].of_all, 0.9);
 }
 
 TEST(SurfaceCoverage, IsTheSameOnEveryThreadCount) {

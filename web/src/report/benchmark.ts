@@ -6,19 +6,17 @@ import { type Json, list, number, object, objects, type ReportDocument, text } f
 import { type Report, section, type Section } from "./parts";
 import type { Pictures } from "./pictures";
 import { type Column, dataTable } from "./table";
+import { count, plural } from "./words";
 
 const percent = (share: number | undefined) => (share === undefined ? "" : (100 * share).toFixed(1));
 
-/** "93.1 ± 0.8" of a share; empty where it was not measured. */
-function shareText(value: unknown): string {
+/** "93.1 ± 0.8", each times `scale`; empty where it was not measured, and without an interval where there is none. */
+function meanText(value: unknown, scale: number, decimals: number): string {
   const { mean, low } = object(value);
   const [middle, least] = [number(mean), number(low)];
   if (middle === undefined) return "";
-  return least === undefined ? percent(middle) : `${percent(middle)} ± ${percent(middle - least)}`;
-}
-
-function meanText(value: unknown, decimals: number): string {
-  return number(object(value)["mean"])?.toFixed(decimals) ?? "";
+  const shown = (of: number) => (scale * of).toFixed(decimals);
+  return least === undefined ? shown(middle) : `${shown(middle)} ± ${shown(middle - least)}`;
 }
 
 function source(row: Json): string {
@@ -27,33 +25,52 @@ function source(row: Json): string {
   return `${year === undefined ? "year not known" : year}, ${text(row["source"])}; ${text(row["object"])}`;
 }
 
+const taken = (row: Json) => number(object(row["views_taken"])["mean"]);
+
 function columns(rows: readonly Json[]): Column<Json>[] {
   const has = (key: string) => rows.some((row) => row[key] !== undefined);
+  const mean = (name: string, key: string, scale: number, decimals: number): Column<Json> => ({
+    name,
+    text: (row) => meanText(row[key], scale, decimals),
+    value: (row) => number(object(row[key])["mean"]),
+  });
   const all: Column<Json>[] = [
-    { name: "method", text: (row) => text(row["method"]) },
+    { name: "method", text: (row) => text(row["method"]), wrap: true },
     { name: "views", text: (row) => (number(row["views"]) ?? 0).toFixed(1).replace(".0", ""), value: (row) => number(row["views"]) },
-    { name: has("of_all") ? "of visible, %" : "coverage, %", text: (row) => shareText(row["of_visible"]), value: (row) => number(object(row["of_visible"])["mean"]) },
   ];
-  if (has("of_all")) all.push({ name: "of all, %", text: (row) => shareText(row["of_all"]), value: (row) => number(object(row["of_all"])["mean"]) });
-  if (has("path_m")) all.push({ name: "path, m", text: (row) => meanText(row["path_m"], 2), value: (row) => number(object(row["path_m"])["mean"]) });
-  if (has("motion_s")) all.push({ name: "motion, s", text: (row) => meanText(row["motion_s"], 1), value: (row) => number(object(row["motion_s"])["mean"]) });
+  if (has("views_taken")) all.push({ name: "taken", text: (row) => taken(row)?.toFixed(1) ?? "", value: taken });
+  all.push(mean(has("of_all") ? "of visible, %" : "coverage, %", "of_visible", 100, 1));
+  if (has("of_all")) all.push(mean("of all, %", "of_all", 100, 1));
+  if (has("path_m")) all.push(mean("path, m", "path_m", 1, 2));
+  if (has("motion_s")) all.push(mean("motion, s", "motion_s", 1, 1));
   if (has("coverage")) all.push({ name: "published, %", text: (row) => percent(number(row["coverage"])), value: (row) => number(row["coverage"]) });
-  all.push({ name: "source", text: source, left: true });
-  all.push({ name: "what differs", text: (row) => text(row["differs"]), left: true });
+  all.push({ name: "source", text: source, left: true, wrap: true });
+  if (has("differs")) all.push({ name: "what differs", text: (row) => text(row["differs"]), left: true, wrap: true });
   return all;
+}
+
+/** What the table of an interrupted benchmark is over. null for one that is done, and in records of older programs. */
+function incomplete(benchmark: Json): HTMLElement | null {
+  if (benchmark["complete"] !== false) return null;
+  const runs = object(benchmark["runs"]);
+  const each = number(runs["each_strategy"]) ?? 0;
+  const over =
+    each === 0
+      ? "There is no object that all strategies with runs have in common yet."
+      : `The table has ${plural(each, "run")} of each strategy: the objects, first views and seeds that all strategies with runs have in common.`;
+  return h("p", {}, h("strong", {}, `${count(number(runs["done"]))} of ${count(number(runs["planned"]))} runs so far. `), `${over} Nothing is said beside published figures.`);
 }
 
 function tableSection(benchmark: Json): Section {
   const rows = objects(benchmark["table"]);
-  const beside = list(benchmark["beside_published"]).map((line) => h("li", {}, String(line)));
   const none = text(benchmark["not_published"]);
   return section(
     "benchmark",
     `${text(benchmark["name"])}, version ${number(benchmark["version"]) ?? ""}`,
     h("p", {}, `${text(benchmark["text"])}. ${text(benchmark["measure"])}.`),
     benchmark["stand_ins"] === true ? h("p", {}, h("strong", {}, "Stand-ins: "), "these objects are made by rule and are not those of the publications, so the figures cannot be compared with theirs.") : null,
+    incomplete(benchmark),
     dataTable("Ours and published", columns(rows), rows),
-    beside.length > 0 ? h("ul", { class: "notes" }, ...beside) : null,
     none === "" ? null : h("p", { class: "soft" }, `No published figures: ${none}.`),
   );
 }
@@ -62,5 +79,5 @@ export function benchmarkReport(document: ReportDocument, pictures: Pictures): R
   const benchmark = object(document.record.result["benchmark"]);
   const runs = compareReport(document, pictures);
   const lines = list(benchmark["beside_published"]).map(String);
-  return { ...runs, title: `Benchmark ${text(benchmark["name"])}`, summary: lines[lines.length - 1] ?? runs.summary, sections: [tableSection(benchmark), ...runs.sections] };
+  return { ...runs, title: `Benchmark ${text(benchmark["name"])}`, summary: lines.length > 0 ? lines.map((line) => `${line}.`).join("\n") : runs.summary, sections: [tableSection(benchmark), ...runs.sections] };
 }

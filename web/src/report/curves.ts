@@ -137,21 +137,45 @@ function tip<T extends { x: number; y: number }>(points: T[], title: (point: T) 
   return Plot.tip(points, Plot.pointer({ x: "x", y: "y", title, fill: "var(--raised)", stroke: "var(--line-strong)", textPadding: 6 }));
 }
 
+const kLetter = 6.8; // width of a letter of the axis, px
+const kNumber = 4; // letters of names that are numbers, of which some are left out
+const kTurn = 60; // of names that have no room beside each other, degrees
+
+interface NamesBelow {
+  tickRotate: number;
+  /** Each of so many is shown. */
+  every: number;
+  below: number;
+  left: number;
+}
+
+/** Room for the names below bars. Where they are too long, they stand obliquely. */
+function namesBelow(names: readonly string[], width: number): NamesBelow {
+  const letters = Math.max(...names.map((name) => name.length));
+  const longest = kLetter * letters;
+  const bar = (width - 72) / names.length;
+  if (letters <= kNumber || longest + 8 <= bar) return { tickRotate: 0, every: Math.ceil((longest + 8) / bar), below: 36, left: 52 };
+  const angle = (kTurn * Math.PI) / 180;
+  const [aside, down] = [Math.cos(angle) * longest, Math.sin(angle) * longest];
+  return { tickRotate: -kTurn, every: Math.ceil(16 / bar), below: Math.ceil(down) + 18, left: Math.max(52, Math.ceil(aside - bar / 2) + 8) };
+}
+
 /** Bars of parts that lie on top of each other, one bar per name; a part without any amount is left out. */
 export function stackedBars(title: string, y: string, bars: readonly { name: string; parts: readonly number[] }[], parts: readonly string[]): HTMLElement | null {
   const used = parts.map((_, i) => bars.some((bar) => (bar.parts[i] ?? 0) > 0));
   if (!used.includes(true)) return null;
   const pieces = bars.flatMap((bar) => parts.flatMap((part, i) => (used[i] ? [{ bar: bar.name, part, amount: bar.parts[i] ?? 0, color: phaseColor(i) }] : [])));
-  const crowded = Math.max(1, Math.ceil(bars.length / 12));
-  const draw = (width: number) =>
-    Plot.plot({
+  const names = bars.map((bar) => bar.name);
+  const draw = (width: number) => {
+    const { tickRotate, every, below, left } = namesBelow(names, width);
+    return Plot.plot({
       width,
-      height: kHeight,
-      marginLeft: 52,
+      height: kHeight - 36 + below,
+      marginLeft: left,
       marginTop: 28,
-      marginBottom: 36,
+      marginBottom: below,
       color: { type: "identity" },
-      x: { domain: bars.map((bar) => bar.name), label: null, tickFormat: (of: string) => (bars.findIndex((bar) => bar.name === of) % crowded === 0 ? of : "") },
+      x: { domain: names, label: null, tickRotate, tickFormat: (of: string) => (names.indexOf(of) % every === 0 ? of : "") },
       y: { label: y, grid: true, ticks: 5, tickFormat: compactNumber },
       marks: [
         Plot.barY(pieces, Plot.stackY({ x: "bar", y: "amount", fill: "color", order: null })),
@@ -159,6 +183,7 @@ export function stackedBars(title: string, y: string, bars: readonly { name: str
         Plot.tip(pieces, Plot.pointerX(Plot.stackY({ x: "bar", y: "amount", title: (piece: (typeof pieces)[0]) => `${piece.bar}\n${piece.part}: ${compactNumber(piece.amount)} ${y}`, fill: "var(--raised)", stroke: "var(--line-strong)" }))),
       ],
     });
+  };
   const key = keyOf(parts.flatMap((part, i) => (used[i] ? [{ name: part, color: phaseColor(i) }] : [])));
   const total = (bar: { parts: readonly number[] }) => bar.parts.reduce((sum, part) => sum + part, 0);
   return figure(title, draw, key, bars.map((bar) => `${bar.name}: ${compactNumber(total(bar))} ${y}`).join("; "));

@@ -39,6 +39,7 @@ const kDefinitions: Record<string, string> = {
   "coverage after the scan": "Coverage before the first view.",
   "coverage at the end": "Coverage after the last view.",
   "area under coverage over views": "Mean coverage after 0, 1, … views up to the budget. A run that ended keeps its last value.",
+  taken: "Views taken of these, mean over objects. A run ends before where no view gains anything.",
   "views taken": "Views after the initial scan.",
   "views to 90 % coverage": "Least number of views after which the coverage is 90 %; runs that never reach it are left out.",
   "views to 95 % coverage": "Least number of views after which the coverage is 95 %; runs that never reach it are left out.",

@@ -17,7 +17,7 @@ export interface Report {
   title: string;
   /** Some words on the run, below the title. */
   settings: [name: string, value: string][];
-  /** Outcome of the run in one or a few sentences. */
+  /** Outcome of the run in one or a few sentences; a line break starts another line. */
   summary: string;
   sections: Section[];
 }

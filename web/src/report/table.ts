@@ -13,6 +13,8 @@ export interface Column<Row> {
   value?(row: Row): number | undefined;
   link?(row: Row): string | undefined;
   left?: boolean;
+  /** Texts of any length: the column is narrow, and they are broken into lines. */
+  wrap?: boolean;
 }
 
 type Direction = "ascending" | "descending";
@@ -84,9 +86,10 @@ class DataTable<Row> {
     const cells = this.columns.map((column, i) => {
       const target = column.link?.(row);
       const content = target === undefined ? column.text(row) : h("a", { href: target }, column.text(row));
-      if (i === 0) return h("th", { scope: "row", class: "left" }, content);
-      const long = column.text(row).length > 40;
-      return h("td", { class: `${column.left ? "left" : ""} ${long ? "long" : ""}` }, content);
+      const wrap = column.wrap ? "wrap" : "";
+      if (i === 0) return h("th", { scope: "row", class: `left ${wrap}` }, content);
+      const long = !column.wrap && column.text(row).length > 40;
+      return h("td", { class: `${column.left ? "left" : ""} ${wrap} ${long ? "long" : ""}` }, content);
     });
     return h("tr", {}, ...cells);
   }

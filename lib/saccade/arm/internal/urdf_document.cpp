@@ -179,12 +179,20 @@ Result<UrdfDocument> parse_urdf_document(const std::string& text) {
   // TinyXML steps over the number of bytes that a UTF-8 character's first byte announces, even beyond the end.
   constexpr std::size_t kLongestCharacter{4};
   const std::string urdf = text + std::string(kLongestCharacter, '\0');
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    return corrupt("no URDF: it is in UTF-16; save it as UTF-8");
+  }
+  if (text.starts_with('"') || text.starts_with('\'')) {
+    return corrupt(
+        "no URDF: it begins with a quotation mark, as a parameter does that was printed with its quotes; "
+        "print it with yaml.safe_load, or rosparam get -p");
+  }
   if (nesting_of(urdf) > kMostNested) return corrupt("no URDF: its elements are nested too deeply");
   TiXmlDocument xml;
   xml.Parse(urdf.c_str());
   if (xml.Error() || xml.RootElement() == nullptr) {
     return corrupt(std::string{"no XML: "} + (xml.Error() ? xml.ErrorDesc() : "nothing in it"),
-                   "line " + std::to_string(xml.ErrorRow()));
+                   xml.ErrorRow() > 0 ? "line " + std::to_string(xml.ErrorRow()) : std::string{});
   }
   if (xml.RootElement()->ValueStr() != "robot")
     return corrupt("no URDF: it begins with <" + xml.RootElement()->ValueStr() + ">, not with <robot>");

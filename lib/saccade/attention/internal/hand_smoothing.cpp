@@ -149,9 +149,15 @@ class Bins {
 
 Status check_order(const HandSample& sample) {
   const auto usable = [](double value) { return std::abs(value) <= kLargest; };
-  if (!usable(sample.time_s)) return Error{Errc::invalid_argument, "a time of the hand is not finite, or huge", ""};
+  if (!usable(sample.time_s)) {
+    return Error{Errc::invalid_argument,
+                 "a time of the hand is not finite, or beyond 1e12 s; times are seconds: divide nanoseconds by 1e9",
+                 ""};
+  }
   for (const double coordinate : sample.position_m) {
-    if (!usable(coordinate)) return Error{Errc::invalid_argument, "a position of the hand is not finite, or huge", ""};
+    if (usable(coordinate)) continue;
+    return Error{Errc::invalid_argument,
+                 "a position of the hand is not finite, or beyond 1e12 m; leave such samples out", ""};
   }
   return {};
 }

@@ -285,7 +285,15 @@ Error ExternalProcess::late(const Request& request, const std::string& what) {
   return fail(Errc::io_failure, text.str());
 }
 
+void ExternalProcess::write_last_line() {
+  if (!last_line_) return;
+  const NoSigpipe no_signal;
+  const std::string text = *std::exchange(last_line_, std::nullopt) + '\n';
+  static_cast<void>(!::write(to_.get(), text.data(), text.size()));  // it has failed already; the pipe never blocks
+}
+
 Error ExternalProcess::ended(const std::string& missing, const char* stream) {
+  write_last_line();
   if (!gone_within(kExitStatusWait)) {
     return fail(Errc::io_failure,
                 std::string{"it closed its "} + stream + " before " + missing + ", and goes on running");
@@ -305,6 +313,7 @@ Result<std::string> ExternalProcess::ask(const Request& request, std::string_vie
 
 Error ExternalProcess::refused(const Request& request, const Error& error) {
   if (error.code == Errc::unavailable) return named(error.code, request.name() + " failed: " + error.message);
+  if (error.code == Errc::io_failure) return fail(error.code, request.name() + " failed: " + error.message);
   return fail(error.code, "the answer to " + request.name() + " is wrong: " + error.to_string());
 }
 
@@ -314,6 +323,7 @@ Error ExternalProcess::named(Errc code, std::string what) const {
 }
 
 Error ExternalProcess::fail(Errc code, const std::string& what) {
+  write_last_line();
   const std::string words = last_lines(errors_.text(kLastWordsWait));
   failure_ = named(code, words.empty() ? what : what + "; its stderr ends: " + words);
   return *failure_;

@@ -76,6 +76,9 @@ class ExternalProcess {
   [[nodiscard]] Result<std::string> read_line(const Request& request);
   /// Returns the next line if it comes within `longest`; nullopt: not yet. Errors: those of read_line, except for time.
   [[nodiscard]] Result<std::optional<std::string>> next_line(const Request& request, std::chrono::milliseconds longest);
+  /// Sets a line that is written at once, without waiting, when the process fails before the next request: the order to
+  /// stop, for a program whose output ended or makes no sense. nullopt: none.
+  void on_failure(std::optional<std::string> line) { last_line_ = std::move(line); }
   /// Writes a line while an answer is pending.
   [[nodiscard]] Status interject(const Request& request, std::string_view line);
   /// Reads exactly as many bytes as fit. Answers io_failure as read_line.
@@ -118,6 +121,7 @@ class ExternalProcess {
   [[nodiscard]] Error ended_before_line(const Request& request);
   /// @param missing what has not arrived: "the answer to hello"
   [[nodiscard]] Error ended(const std::string& missing, const char* stream = "output");
+  void write_last_line();
   [[nodiscard]] Error fail(Errc code, const std::string& what);
   [[nodiscard]] Error named(Errc code, std::string what) const;
 
@@ -131,6 +135,7 @@ class ExternalProcess {
   bool has_answered_{false};
   bool hangs_{false};
   std::optional<std::chrono::steady_clock::time_point> cancelled_at_;  ///< during this request
+  std::optional<std::string> last_line_;
   std::optional<Error> failure_;
 };
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/frames/camera_io.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "saccade/io/files/file_io.hpp"
@@ -230,6 +232,22 @@ Result<PinholeCamera> Intrinsics::camera(int image_width, int image_height) cons
   camera.max_range_m = max_range_m.value_or(camera.max_range_m);
   SACCADE_CHECK(camera.validate());
   return camera;
+}
+
+std::string Intrinsics::doubt(const PinholeCamera& camera) {
+  constexpr double kFarOutside{0.5};  // images that were cropped have it a little outside
+  const auto outside = [](double at_px, int size_px) {
+    return std::max({0.0, -at_px, at_px - static_cast<double>(size_px)}) / static_cast<double>(size_px);
+  };
+  const double widths = outside(camera.cx, camera.width);
+  const double heights = outside(camera.cy, camera.height);
+  if (!(std::max(widths, heights) > kFarOutside)) return {};
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%.1f", std::max(widths, heights));
+  return std::string{"the principal point lies "} + number.data() +
+         (widths >= heights ? " image widths" : " image heights") + " outside of the image of " +
+         std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+         " pixels: check the intrinsics fx,fy,cx,cy";
 }
 
 Result<Intrinsics> parse_intrinsics(std::string_view text) {

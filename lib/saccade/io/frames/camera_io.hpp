@@ -38,6 +38,9 @@ struct Intrinsics {
   /// Returns a camera with the given image size; the range defaults to kRecordedMinRange_m and PinholeCamera's maximum.
   /// Answers size_mismatch when the intrinsics are for another size; invalid_argument as PinholeCamera::validate().
   [[nodiscard]] Result<PinholeCamera> camera(int image_width, int image_height) const;
+  /// Says what is strange about a valid camera, for a warning: a principal point more than half an image outside of the
+  /// image, as another order of the numbers or another image size gives. Empty for a usual camera.
+  [[nodiscard]] static std::string doubt(const PinholeCamera& camera);
 };
 
 /// Parses "fx,fy,cx,cy" (commas or blanks), a 3×3 matrix [fx 0 cx; 0 fy cy; 0 0 1] row by row, such a matrix within one

@@ -41,6 +41,12 @@ ColumnOrder usual_order(std::size_t columns) {
   return order;
 }
 
+/// Whether a number can be a time in seconds. What is not finite is counted elsewhere.
+bool is_time(double time_s) {
+  constexpr double kLatest_s{1e12};
+  return !std::isfinite(time_s) || std::abs(time_s) <= kLatest_s;
+}
+
 Result<HandTrajectory> table_samples(const std::vector<NumberLine>& lines, const ColumnOrder& order,
                                      std::size_t columns) {
   HandTrajectory samples;
@@ -51,6 +57,10 @@ Result<HandTrajectory> table_samples(const std::vector<NumberLine>& lines, const
                                      std::to_string(line.values.size()));
     }
     samples.push_back(sample_of(line.values, order));
+    if (!is_time(samples.back().time_s)) {
+      return bad_line(line.line,
+                      "this time would be thousands of years in seconds; divide times in nanoseconds by 1e9");
+    }
   }
   return samples;
 }
@@ -73,6 +83,22 @@ Result<ColumnOrder> header_order(const std::vector<std::string_view>& names, std
   }
   if (!std::all_of(order.begin() + 4, order.end(), is_there)) std::fill(order.begin() + 4, order.end(), std::nullopt);
   return order;
+}
+
+/// Tables of spreadsheets in countries with decimal commas have semicolons between their fields.
+bool has_semicolons(std::string_view text) {
+  LineScanner lines{text};
+  while (const auto line = lines.next()) {
+    if (!is_comment(*line)) return separator_of(*line) == ';';
+  }
+  return false;
+}
+
+/// Returns such a table with commas and decimal points, line by line.
+std::string with_commas(std::string text) {
+  std::replace(text.begin(), text.end(), ',', '.');
+  std::replace(text.begin(), text.end(), ';', ',');
+  return text;
 }
 
 Result<HandTrajectory> csv_samples(std::string_view text) {
@@ -119,8 +145,11 @@ Result<HandTrajectory> matrix_samples(const std::vector<NumberLine>& lines) {
   return samples;
 }
 
-Result<HandTrajectory> all_samples(std::string_view text, HandFormat format) {
-  if (format == HandFormat::csv) return csv_samples(text);
+Result<HandTrajectory> all_samples(std::string_view file, HandFormat format) {
+  const std::string_view text = without_byte_order_mark(file);
+  if (format == HandFormat::csv) {
+    return has_semicolons(text) ? csv_samples(with_commas(std::string{text})) : csv_samples(text);
+  }
   SACCADE_TRY(const auto lines, number_lines(text));
   if (format == HandFormat::matrices) return matrix_samples(lines);
   if (!lines.empty() && lines.front().values.size() != kColumns.size()) {

@@ -278,6 +278,15 @@ std::vector<RgbdFrameFiles> selected(std::vector<RgbdFrameFiles> all, const Rgbd
   return chosen;
 }
 
+/// Images that several cameras share follow one another.
+std::vector<fs::path> depth_files_of(const std::vector<RgbdFrameFiles>& frames) {
+  std::vector<fs::path> files;
+  for (const RgbdFrameFiles& frame : frames) {
+    if (frame.depth && (files.empty() || files.back() != *frame.depth)) files.push_back(*frame.depth);
+  }
+  return files;
+}
+
 }  // namespace
 
 Result<ImageCorrection> ImageCorrection::create(Intrinsics intrinsics, int width, int height,
@@ -364,8 +373,12 @@ Result<std::unique_ptr<RgbdFolderSource>> open_rgbd_folder(const fs::path& folde
   if (rays.depth.fx < 0.0 || rays.depth.fy < 0.0) {
     info.notes.emplace_back("a focal length is negative: the images are mirrored along that axis");
   }
-  return std::unique_ptr<RgbdFolderSource>{std::make_unique<FolderSource>(
-      std::move(correction), std::move(rays), std::move(info), selected(std::move(listing.frames), config), config)};
+  if (std::string doubt = Intrinsics::doubt(correction.camera()); !doubt.empty())
+    info.notes.push_back(std::move(doubt));
+  std::vector<RgbdFrameFiles> frames = selected(std::move(listing.frames), config);
+  info.depth_files = depth_files_of(frames);
+  return std::unique_ptr<RgbdFolderSource>{std::make_unique<FolderSource>(std::move(correction), std::move(rays),
+                                                                          std::move(info), std::move(frames), config)};
 }
 
 }  // namespace saccade

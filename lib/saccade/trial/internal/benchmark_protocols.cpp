@@ -75,6 +75,7 @@ std::vector<PublishedFigure> mcmf_figures() {
 
 Benchmark view_sphere_protocol() {
   return {.name = "view-sphere",
+          .version = 2,
           .text = "an object seen from all around, 5000 views to choose from, ten views",
           .meshes = stanford_meshes(),
           .stand_ins = {"figure", "hare", "coil"},
@@ -89,6 +90,7 @@ Benchmark view_sphere_protocol() {
 
 Benchmark one_shot_protocol() {
   return {.name = "one-shot",
+          .version = 2,
           .text = "an object on a table, 32 views over it; all views chosen at once, or one by one; 12 views",
           .meshes = stanford_meshes(),
           .stand_ins = {"figure", "hare", "coil", "jug"},
@@ -126,6 +128,7 @@ Benchmark tabletop_arm_protocol() {
 
 Benchmark household_protocol() {
   return {.name = "household",
+          .version = 2,
           .text = "household objects on a table, a camera that flies freely, six views",
           .meshes = ycb_meshes(),
           .stand_ins = {"jug", "figure", "hare"},

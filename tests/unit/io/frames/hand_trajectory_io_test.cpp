@@ -62,6 +62,28 @@ TEST(HandTrajectoryIo, CsvWithAndWithoutAHeader) {
   EXPECT_TRUE(parse_hand_trajectory("time,x,y,z\n", HandFormat::csv).value().trajectory.empty());
 }
 
+TEST(HandTrajectoryIo, CsvOfSpreadsheets) {
+  const HandRecording marked = parse_hand_trajectory("\xEF\xBB\xBFtime,x,y,z\n0,1,2,3\n", HandFormat::csv).value();
+  EXPECT_EQ(marked.trajectory.at(0).position_m, Eigen::Vector3d(1, 2, 3));
+  const HandRecording plain = parse_hand_trajectory(
+                                  "\xEF\xBB\xBF"
+                                  "0,1,2,3\n",
+                                  HandFormat::csv)
+                                  .value();
+  EXPECT_EQ(plain.trajectory.size(), 1U);
+  const HandRecording german =
+      parse_hand_trajectory("# Hand, links\ntime;x;y;z\r\n0,5;1,25;2;-3,5\r\n", HandFormat::csv).value();
+  ASSERT_EQ(german.trajectory.size(), 1U);
+  EXPECT_EQ(german.trajectory[0].time_s, 0.5);
+  EXPECT_EQ(german.trajectory[0].position_m, Eigen::Vector3d(1.25, 2, -3.5));
+}
+
+TEST(HandTrajectoryIo, TimesInNanosecondsSayWhere) {
+  const std::string message = message_of("0,1,2,3\n1700000000000000000,1,2,3\n", HandFormat::csv);
+  EXPECT_TRUE(message.starts_with("line 2: ")) << message;
+  EXPECT_NE(message.find("nanoseconds by 1e9"), std::string::npos) << message;
+}
+
 TEST(HandTrajectoryIo, BadSamplesAreCountedAndLeftOut) {
   const HandRecording recording =
       parse_hand_trajectory("0,0,0,0\n0.1,nan,0,0\n0.2,1,0,0\n0.2,2,0,0\n0.3,1,0,0\n", HandFormat::csv).value();
