@@ -26,7 +26,7 @@ std::vector<std::string> object_names(const Benchmark& benchmark, bool from_mesh
   return names;
 }
 
-/// What the scenes of an object are called after it: "@4", "@12" …; nothing where there is one scene.
+/// Ending of the names of an object's scenes: "@4", "@12" …; nothing where there is one scene.
 std::vector<std::string> start_names(const Benchmark& benchmark) {
   std::vector<std::string> names;
   if (benchmark.starts == 1) return names;

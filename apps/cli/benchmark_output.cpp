@@ -34,7 +34,7 @@ std::vector<std::string> strategies_in(const ComparedRuns& compared) {
   return strategies;
 }
 
-/// What runs of different strategies have in common.
+/// Scene and seed, which runs of different strategies have in common.
 using SceneAndSeed = std::pair<std::string, std::uint64_t>;
 
 /// Those of which all strategies have a run.

@@ -24,7 +24,7 @@ struct MeasuredRun {
 struct BenchmarkRow {
   std::string method;
   double views{0.0};                  ///< the first one included
-  std::optional<MeanEstimate> taken;  ///< of these views; a run ends before where no view gains anything
+  std::optional<MeanEstimate> taken;  ///< views taken; a run ends before where no view gains anything
   std::optional<MeanEstimate> of_visible;
   std::optional<MeanEstimate> of_all;
   std::optional<MeanEstimate> path_m;    ///< for protocols with scenes of their own
@@ -35,7 +35,7 @@ struct BenchmarkRow {
 struct BenchmarkTable {
   std::vector<BenchmarkRow> rows;
   std::size_t planned{0};        ///< runs of the benchmark
-  std::size_t done{0};           ///< of these
+  std::size_t done{0};           ///< runs that are done
   std::size_t each_strategy{0};  ///< runs of each strategy that the rows are over
 
   [[nodiscard]] bool is_complete() const { return done == planned; }

@@ -37,7 +37,7 @@ class SliceCounter {
   [[nodiscard]] SliceRuns of(const Slice& slice) const;
 
  private:
-  std::vector<SliceRuns> upto_;  ///< of the first k parts, for k = 0, 1, …
+  std::vector<SliceRuns> upto_;  ///< runs within the first k parts, for k = 0, 1, …
 };
 
 /// DIR/shards/2-of-10.

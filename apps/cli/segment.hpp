@@ -71,7 +71,7 @@ struct SegmentInput {
   PointCloud cloud;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< surface of a map; empty for a cloud
   Eigen::Vector3d viewpoint_m{Eigen::Vector3d::Zero()};
-  std::optional<double> map_voxel_size_m;  ///< of a map
+  std::optional<double> map_voxel_size_m;  ///< none for a cloud
   [[nodiscard]] bool is_map() const { return map_voxel_size_m.has_value(); }
   Origin radii{Origin::file};
   Origin normals{Origin::file};

@@ -107,8 +107,9 @@ class InverseKinematics {
   /// needed.
   [[nodiscard]] bool any_of(const Pose& T_world_camera, const Configuration& reference,
                             const std::function<bool(const Configuration&)>& passes) const;
-  /// The same for what depends on the arm's shape alone, such as collisions: of solutions that differ by whole turns of
-  /// joints, which can be 128 with seven joints of ±2π, only the one nearest to the reference is tried (closed form).
+  /// As any_of(), for what depends on the arm's shape alone, such as collisions: of solutions that differ by whole
+  /// turns of joints, which can be 128 with seven joints of ±2π, only the one nearest to the reference is tried (closed
+  /// form).
   [[nodiscard]] bool any_shape_of(const Pose& T_world_camera, const Configuration& reference,
                                   const std::function<bool(const Configuration&)>& passes) const;
 

@@ -44,7 +44,7 @@ void draw_way(Canvas& canvas, std::span<const HandSample> trajectory, double sta
   }
 }
 
-/// A point that falls so many pixels above another in the picture.
+/// Returns a point that falls `pixels` above another in the picture.
 Eigen::Vector3d above(const Canvas& canvas, const Eigen::Vector3d& p_world, double pixels) {
   const Viewpoint& view = canvas.view();
   const Eigen::Vector3d up = -view.T_world_camera.linear().col(1);

@@ -57,7 +57,7 @@ using TakeRun = std::function<Status(const StoredRun& run)>;
 /// Whether a merge takes a run.
 struct MergeChoice {
   bool taken{true};
-  std::string why_not{};  ///< of a run that is left out: what follows the file's name in an error
+  std::string why_not{};  ///< why a run is left out: what follows the file's name in an error
 };
 
 /// Tells whether a run belongs to the campaign; an error ends the merge.

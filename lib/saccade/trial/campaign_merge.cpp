@@ -288,7 +288,7 @@ Status Campaign::take_runs(const Campaign& shard, const AcceptRun& accept, Campa
   SACCADE_TRY(SqliteStatement write, SqliteStatement::prepare(file_, insert_text("runs", std::string{kAllRunColumns})));
   SACCADE_TRY(ViewCopy views, ViewCopy::prepare(shard.file_, file_));
   CampaignMerge here;
-  std::string why_not;  // of the first that is left out
+  std::string why_not;  // why the first run that is left out was
   while (true) {
     SACCADE_TRY(const bool more, read.step());
     if (!more) break;

@@ -178,7 +178,7 @@ std::vector<CoverageShares> SurfaceCoverage::along(std::span<const Pose> views, 
     const auto cell = data.cells.find(voxel_at(p, data.rule.size_m));
     if (cell != data.cells.end()) mark(data.part[cell->second.front()]);
   };
-  // A point on the far side of a thin wall lies near to what was measured, but nobody looked at it.
+  // A point on the far side of a thin wall lies near to what was measured, but no view has seen it.
   const auto add_near = [&](const Vector3d& p, const Vector3d& eye) {
     const Index3 middle = voxel_at(p, data.rule.size_m);
     IndexBox::cube(middle, 1).grown(1).for_each([&](const Index3& voxel) {

@@ -49,7 +49,7 @@ function columns(rows: readonly Json[]): Column<Json>[] {
   return all;
 }
 
-/** What the table of an interrupted benchmark is over. null for one that is done, and in records of older programs. */
+/** Runs that the table of an interrupted benchmark is over. null for one that is done, and in records of older programs. */
 function incomplete(benchmark: Json): HTMLElement | null {
   if (benchmark["complete"] !== false) return null;
   const runs = object(benchmark["runs"]);

@@ -139,11 +139,11 @@ function tip<T extends { x: number; y: number }>(points: T[], title: (point: T) 
 
 const kLetter = 6.8; // width of a letter of the axis, px
 const kNumber = 4; // letters of names that are numbers, of which some are left out
-const kTurn = 60; // of names that have no room beside each other, degrees
+const kTurn = 60; // angle for names that have no room beside each other, degrees
 
 interface NamesBelow {
   tickRotate: number;
-  /** Each of so many is shown. */
+  /** One name in this number is shown. */
   every: number;
   below: number;
   left: number;

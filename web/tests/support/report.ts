@@ -220,7 +220,7 @@ export function armBenchmark(): { record: Record; details: unknown } {
   return { record, details };
 }
 
-/** A comparison of so many strategies with long names. */
+/** A comparison with the given number of strategies, whose names are long. */
 export function manyStrategies(strategies: number): { record: Record; details: unknown } {
   const { record, details } = comparison();
   const one = (record.result["summaries"] as { scene: string | null }[])[0]!;

@@ -101,7 +101,7 @@ struct RgbdFolderInfo {
   bool is_bag{false};              ///< no folder but a bag, read by io/bags; the layout is meaningless
   std::string damage;              ///< damage of a bag, for people; empty for a sound one
   std::vector<std::string> notes;  ///< what was left out or changed on the way in, and what is strange, for people
-  std::vector<std::filesystem::path> depth_files{};  ///< of a folder, those of its frames in their order, each once
+  std::vector<std::filesystem::path> depth_files{};  ///< depth images of a folder's frames in their order, each once
 };
 
 /// Correction of a recording's images: removes the lens' distortion, masks ignored pixels, mirrors images whose focal

@@ -395,24 +395,5 @@ INSTANTIATE_TEST_SUITE_P(Data, RealFrames,
                            return name;
                          });
 
-TEST(RgbdFolder, NamesItsDepthFiles) {
-  const TempFolder folder;
-  write_seven_scenes(folder);
-  ASSERT_TRUE(write_png16(folder / "frame-000000.label.png", depth_image()));
-  const auto source = open_rgbd_folder(folder.path(), {.first = 1}).value();
-  EXPECT_EQ(source->info().depth_files,
-            (std::vector<fs::path>{folder / "frame-000001.depth.png", folder / "frame-000002.depth.png"}));
-}
-
-TEST(RgbdFolder, NotesAPrincipalPointFarOutside) {
-  const TempFolder folder;
-  write_seven_scenes(folder);
-  EXPECT_TRUE(open_rgbd_folder(folder.path()).value()->info().notes.empty());
-  folder.write("camera-intrinsics.txt", "10 0 3.5\n0 10 18\n0 0 1\n");
-  const std::vector<std::string> notes = open_rgbd_folder(folder.path()).value()->info().notes;
-  ASSERT_EQ(notes.size(), 1U);
-  EXPECT_NE(notes.front().find("2.0 image heights outside of the image of 8x6"), std::string::npos) << notes.front();
-}
-
 }  // namespace
 }  // namespace saccade

@@ -333,5 +333,26 @@ TEST_F(Layouts, UnknownFoldersNameTheNearestLayout) {
   EXPECT_NE(refusal({.layout = RgbdLayout::scannet}).find("it lacks intrinsic/intrinsic_depth.txt"), std::string::npos);
 }
 
+TEST_F(Layouts, NameTheirDepthFilesAndAPrincipalPointFarOutside) {
+  folder_.write("camera-intrinsics.txt", "10 0 3.5\n0 10 2.5\n0 0 1\n");
+  for (const std::string stem : {"frame-000000", "frame-000001", "frame-000002"}) {
+    depth(stem + ".depth.png", 1000);
+    depth(stem + ".label.png", 1);
+    color(stem + ".color.png");
+    folder_.write(stem + ".pose.txt", pose_at("0"));
+  }
+  const auto source = opened({.first = 1});
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->info().depth_files,
+            (std::vector<fs::path>{folder_ / "frame-000001.depth.png", folder_ / "frame-000002.depth.png"}));
+  EXPECT_TRUE(source->info().notes.empty());
+  folder_.write("camera-intrinsics.txt", "10 0 3.5\n0 10 18\n0 0 1\n");
+  const auto far = opened();
+  ASSERT_TRUE(far);
+  ASSERT_EQ(far->info().notes.size(), 1U);
+  EXPECT_NE(far->info().notes.front().find("2.0 image heights outside of the image of 8x6"), std::string::npos)
+      << far->info().notes.front();
+}
+
 }  // namespace
 }  // namespace saccade
