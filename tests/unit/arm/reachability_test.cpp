@@ -43,6 +43,35 @@ TEST(Reachability, GivesEveryFreeConfiguration) {
   }
 }
 
+/// Whole turns of a joint change no collision, so that wide limits give no other answers, and not 2^6 times the work.
+TEST(Reachability, WholeTurnsChangeNothing) {
+  ArmDescription wide = armed().description();
+  for (ArmJoint& joint : wide.joints) {
+    joint.limits.lower = -6.28;
+    joint.limits.upper = 6.28;
+  }
+  ArmDescription once = wide;
+  for (ArmJoint& joint : once.joints) {
+    joint.limits.lower = -3.15;
+    joint.limits.upper = 3.15;
+  }
+  const ArmModel model = ArmModel::create(wide).value();
+  const Reachability turning = Reachability::create(ArmCollision::create(model).value()).value();
+  const Reachability plain = Reachability::create(ArmCollision::create(ArmModel::create(once).value()).value()).value();
+  const ObstacleMap wall = test::only({Box{{0.5, -2.0, -2.0}, {0.6, 2.0, 2.0}}});
+  std::mt19937_64 random{15};
+  std::vector<Pose> poses;
+  for (int i = 0; i < 60; ++i) poses.push_back(camera_pose(model, test::random_configuration(model, random)));
+  const auto refusals = turning.test(poses, model.middle(), wall, Executor{});
+  EXPECT_EQ(refusals, plain.test(poses, model.middle(), wall, Executor{}));
+  EXPECT_GT(std::count(refusals.begin(), refusals.end(), Refusal::goal_in_collision), 5);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const PoseGoals goals = turning.goals(poses[i], model.middle(), wall);
+    EXPECT_EQ(goals.free.empty(), refusals[i].has_value()) << i;
+    for (const Configuration& q : goals.free) EXPECT_LT(test::miss(camera_pose(model, q), poses[i]), 1e-6);
+  }
+}
+
 TEST(Reachability, SaysWhyThereIsNone) {
   const ArmModel model = armed();
   const Reachability reachability = Reachability::create(ArmCollision::create(model).value()).value();

@@ -192,6 +192,19 @@ TEST(ProgramJoints, AProgramThatHangsOrDiesOnTheWayIsNoticedAtOnce) {
   EXPECT_LT(watch.elapsed_ms(), 3000.0);  // the watchdog, the word to stop, and the end of the program
 }
 
+TEST(ProgramJoints, AProgramWhoseOutputEndsOrMakesNoSenseIsToldToStop) {
+  for (const std::string on_follow : {"sys.stdout.flush(); import os; os.close(1)", "print('x' * 70000, flush=True)"}) {
+    const BadJoints bad{on_follow};
+    auto joints = ProgramJoints::start(joints_config(bad.command()));
+    ASSERT_TRUE(joints.ok()) << joints.error().to_string();
+    const auto end = (*joints)->execute(turn((*joints)->position().value(), 0.8));
+    ASSERT_FALSE(end.ok()) << on_follow;
+    EXPECT_NE(end.error().message.find("the arm was told to stop"), std::string::npos) << end.error().to_string();
+    joints->reset();
+    EXPECT_NE(bad.requests().find("follow\nstop\n"), std::string::npos) << on_follow << ": " << bad.requests();
+  }
+}
+
 TEST(ProgramJoints, PositionsOutsideTheLimitsAreAnError) {
   const BadJoints bad{"pass"};
   ProgramJointsConfig config = joints_config(bad.command());
