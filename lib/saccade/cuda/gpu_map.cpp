@@ -14,6 +14,7 @@
 namespace saccade {
 
 using internal::cuda::Compute;
+using internal::cuda::GainTask;
 using internal::cuda::HostCompute;
 
 namespace {
@@ -25,7 +26,6 @@ constexpr IndexBox kAllBricks{{-(1 << 27), -(1 << 27), -(1 << 27)}, {1 << 27, 1 
 IndexBox bricks_between(const TsdfConfig& config, const Region& region, std::span<const Pose> T_world_camera) {
   IndexBox voxels = region_in_workspace(region, config);
   for (const Pose& pose : T_world_camera) {
-    if (!pose.translation().allFinite()) return kNoBricks;  // refused later
     voxels = voxels.hull(IndexBox::cube(voxel_at(pose.translation(), config.voxel_size_m), 1));
   }
   return voxels.empty() ? kNoBricks : parents(voxels).grown(1);
@@ -69,6 +69,7 @@ Result<GpuMap> GpuMap::create_emulated(const TsdfConfig& config, const Executor&
 
 const TsdfConfig& GpuMap::config() const { return impl_->bricks.config(); }
 bool GpuMap::is_paged() const { return impl_->bricks.is_paged(); }
+bool GpuMap::is_lost() const { return impl_->bricks.is_lost(); }
 GpuTraffic GpuMap::traffic() const { return impl_->compute.traffic(); }
 
 Result<FusionStats> GpuMap::integrate(const PinholeCamera& camera, const DepthImage& depth,
@@ -84,8 +85,8 @@ Result<FusionStats> GpuMap::integrate(const PinholeCamera& camera, const DepthIm
     return impl_->fusion.integrate(config(), camera, depth, T_world_camera, bricks.store(), bring_in);
   };
   Result<FusionStats> stats = fuse();
-  if (!stats.ok() && !impl_->fusion.failed_halfway() && !bricks.is_paged() && Impl::may_be_short(stats.error()) &&
-      !seen.empty()) {
+  if (!stats.ok() && !impl_->fusion.failed_halfway() && !bricks.is_paged() &&
+      internal::cuda::is_no_room(stats.error()) && !seen.empty()) {
     SACCADE_CHECK(bricks.page_to(seen));
     stats = fuse();
   }
@@ -108,12 +109,17 @@ Result<SurfaceView> GpuMap::raycast(const PinholeCamera& camera, const Pose& T_w
   });
 }
 
+Status GpuMap::can_evaluate(const Region& region, const GainConfig& config) {
+  return internal::cuda::check_gains(region, config);
+}
+
 Result<GainResult> GpuMap::evaluate_views(const Region& region, std::span<const Pose> T_world_camera,
                                           const GainConfig& config, const Executor& executor) {
   const TsdfConfig& map = this->config();
-  SACCADE_TRY(GainResult result, impl_->with_bricks(bricks_between(map, region, T_world_camera), [&] {
-    return impl_->gain.evaluate(map, region, T_world_camera, config, impl_->bricks.store(), executor);
-  }));
+  SACCADE_CHECK(impl_->bricks.check());
+  SACCADE_TRY(const GainTask task, internal::cuda::prepare_gains(map, region, T_world_camera, config, executor));
+  SACCADE_TRY(GainResult result, impl_->with_bricks(bricks_between(map, region, T_world_camera),
+                                                    [&] { return impl_->gain.count(task, impl_->bricks.store()); }));
   result.backend = impl_->backend;
   if (std::all_of(result.gains.begin(), result.gains.end(), [](std::uint64_t gain) { return gain == 0; })) {
     SACCADE_TRY(const TsdfSnapshot content, snapshot());

@@ -65,6 +65,9 @@ class GpuMap final : public SurfaceDevice {
   /// Casts a ray per pixel to the surface, as saccade::raycast does; without colours. O(pixels · bricks along the ray).
   [[nodiscard]] Result<SurfaceView> raycast(const PinholeCamera& camera, const Pose& T_world_camera);
 
+  /// Tells whether evaluate_views can do this on a GPU, without opening one: unsupported for a cylinder, and where
+  /// distinct voxels are counted.
+  [[nodiscard]] static Status can_evaluate(const Region& region, const GainConfig& config);
   /// Computes the gains of evaluate_views, a ray per thread. The executor finds the rays' windows.
   /// @return errors of evaluate_views; unsupported for a cylinder, and where distinct voxels are counted.
   /// O(rays that meet the region · bricks along them).
@@ -79,6 +82,8 @@ class GpuMap final : public SurfaceDevice {
 
   /// Tells whether the GPU's memory did not suffice for the map, so that it holds a part.
   [[nodiscard]] bool is_paged() const;
+  /// Tells whether the GPU is gone for good: every call answers unavailable from now on.
+  [[nodiscard]] bool is_lost() const;
   [[nodiscard]] GpuTraffic traffic() const;
 
  private:

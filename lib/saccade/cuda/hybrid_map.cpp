@@ -2,14 +2,34 @@
 #include "saccade/cuda/hybrid_map.hpp"
 
 namespace saccade {
+namespace {
+
+bool same_workspace(const TsdfConfig& a, const TsdfConfig& b) {
+  if (!a.workspace || !b.workspace) return a.workspace.has_value() == b.workspace.has_value();
+  return a.workspace->min == b.workspace->min && a.workspace->max == b.workspace->max;
+}
+/// Tells whether two maps hold the same after the same images. Colours are not fused in either.
+bool same_map(const TsdfConfig& a, const TsdfConfig& b) {
+  return a.voxel_size_m == b.voxel_size_m && a.truncation_vox == b.truncation_vox && a.max_weight == b.max_weight &&
+         a.free_weight == b.free_weight && a.clearing_percent == b.clearing_percent && same_workspace(a, b);
+}
+
+}  // namespace
 
 Result<HybridMap> HybridMap::create(const TsdfConfig& config, std::optional<GpuMap> gpu) {
   SACCADE_TRY(TsdfMap map, TsdfMap::create(config));
+  if (gpu && !same_map(gpu->config(), config)) {
+    return Error{Errc::invalid_argument, "the map on the GPU has another configuration", "cuda"};
+  }
   return HybridMap{std::move(map), std::move(gpu)};
 }
 
 Status HybridMap::catch_up(const Executor& executor) {
-  if (!gpu_ || frames_.empty()) return {};
+  if (!gpu_) return {};
+  if (frames_.empty()) {
+    if (gpu_->is_lost()) gpu_.reset();
+    return {};
+  }
   if (Result<TsdfSnapshot> content = gpu_->snapshot(); content.ok()) {
     cpu_ = TsdfMap{std::move(content).value()};
   } else {
@@ -38,13 +58,18 @@ auto HybridMap::step(const OnGpu& on_gpu, const OnCpu& on_cpu, const Executor& e
 Result<FusionStats> HybridMap::integrate(const PinholeCamera& camera, const DepthImage& depth,
                                          const Pose& T_world_camera, const Executor& executor) {
   const auto on_gpu = [&]() -> Result<FusionStats> {
+    frames_.push_back({camera, depth, T_world_camera});  // before: what the GPU fused is never without its image
     Result<FusionStats> stats = gpu_->integrate(camera, depth, T_world_camera);
-    if (stats.ok()) frames_.push_back({camera, depth, T_world_camera});
+    if (!stats.ok()) frames_.pop_back();
     return stats;
   };
   const auto on_cpu = [&]() -> Result<FusionStats> {
     Result<FusionStats> stats = cpu_.integrate(camera, depth, T_world_camera, executor);
-    if (gpu_ && stats.ok() && !gpu_->follow(cpu_.content(), executor).ok()) gpu_.reset();
+    if (!gpu_ || !stats.ok()) return stats;
+    if (const Status followed = gpu_->follow(cpu_.content(), executor); !followed.ok()) {
+      problem_ = followed.error().message;
+      gpu_.reset();
+    }
     return stats;
   };
   SACCADE_TRY(const FusionStats stats, step(on_gpu, on_cpu, executor));

@@ -18,7 +18,8 @@ namespace saccade {
 /// on. Results equal those of the CPU to the bit in all cases. Colours are not fused. One thread at a time.
 class HybridMap {
  public:
-  /// @param gpu  an empty map; nullopt: the CPU does everything. Answers invalid_argument for an invalid configuration.
+  /// @param gpu  an empty map; nullopt: the CPU does everything. Answers invalid_argument for an invalid configuration,
+  /// and where that of the GPU's map differs.
   [[nodiscard]] static Result<HybridMap> create(const TsdfConfig& config, std::optional<GpuMap> gpu);
 
   /// As TsdfMap::integrate; keeps the image until the next snapshot, at most kMostFrames of them.

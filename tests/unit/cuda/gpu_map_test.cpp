@@ -189,6 +189,18 @@ TEST(GpuMap, SaysWhatItCannotDo) {
   std::vector<Pose> bad{Pose::Identity()};
   bad[0].translation().x() = std::nan("");
   EXPECT_EQ(map.evaluate_views(sphere, bad, {}, {}).error().code, Errc::invalid_argument);
+  GainConfig huge;  // more tiles of rays than a kernel can have blocks
+  huge.sensor = PinholeCamera{16'000, 16'000, 9000.0, 9000.0, 7999.5, 7999.5, 0.1, 2.0};
+  std::vector<Pose> many(3000, Pose::Identity());
+  for (std::size_t i = 0; i < many.size(); ++i) many[i].translation().x() = 1e-6 * static_cast<double>(i);
+  const Region around{Sphere{{0.0, 0.0, 0.0}, 1.0}};
+  EXPECT_EQ(map.evaluate_views(around, many, huge, {}).error().code, Errc::unsupported);
+  EXPECT_FALSE(map.is_paged()) << "none of this is a lack of memory";
+  EXPECT_EQ(map.traffic().kernels, 0U) << "nothing was tried";
+  EXPECT_EQ(map.traffic().bytes_sent, 0U);
+  EXPECT_EQ(GpuMap::can_evaluate(cylinder, {}).error().code, Errc::unsupported);
+  EXPECT_EQ(GpuMap::can_evaluate(sphere, distinct).error().code, Errc::unsupported);
+  EXPECT_TRUE(GpuMap::can_evaluate(sphere, {}).ok());
 }
 
 TEST(GpuMap, TooLittleMemoryIsAnErrorAndTheCpuGoesOn) {

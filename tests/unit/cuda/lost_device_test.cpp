@@ -23,6 +23,7 @@ TEST(LostDevice, EveryCallSaysSo) {
   const Region region{Sphere{Eigen::Vector3d::Zero(), 0.4 * run.extent()}};
   GainConfig config;
   config.sensor = camera;
+  const GainTask task = prepare_gains(run.config(), region, poses, config, {}).value();
   int ended{0};
   for (int operations = 0; operations < 200 && ended == 0; ++operations) {
     SCOPED_TRACE(operations);
@@ -32,7 +33,7 @@ TEST(LostDevice, EveryCallSaysSo) {
     GpuGain gain{device};
     GpuRaycast raycast{device};
     const auto stats = fusion.integrate(run.config(), camera, depth, T_world_camera, bricks);
-    const auto gains = gain.evaluate(run.config(), region, poses, config, bricks, {});
+    const auto gains = gain.count(task, bricks);
     const auto view = raycast.cast(run.config(), camera, T_world_camera, bricks);
     const auto content = bricks.snapshot(run.config());
     if (stats.ok() && gains.ok() && view.ok() && content.ok()) ++ended;

@@ -73,7 +73,7 @@ Status BrickStore::cover(const IndexBox& bricks) {
   const IndexBox box = whole_blocks(box_of(bricks_).hull(bricks));
   if (box.count() > kMostBricks) {
     return Error{Errc::unsupported, "the map spans too much space for a table on the GPU; use larger voxels or the CPU",
-                 "cuda"};
+                 kNoRoom};
   }
   const TableBox table = table_of(box);
   const TableBox blocks =
@@ -103,13 +103,18 @@ Status BrickStore::reserve_slots(std::size_t more) {
   const std::size_t needed = used_slots_ + more;
   if (needed <= slots()) return {};
   if (needed > BrickEntry::kMostSlots)
-    return Error{Errc::unsupported, "the map has too many bricks for the GPU", "cuda"};
+    return Error{Errc::unsupported, "the map has too many bricks for the GPU", kNoRoom};
   constexpr std::size_t kLeast{1024};
-  const std::size_t grown = std::max({needed, slots() + slots() / 2, kLeast});
-  SACCADE_CHECK(w_.reserve(grown * kBrickVoxels, used_slots_ * kBrickVoxels));
-  SACCADE_CHECK(unknown_.reserve(grown * kBrickWords, used_slots_ * kBrickWords));
-  SACCADE_CHECK(occupied_.reserve(grown * kBrickWords, used_slots_ * kBrickWords));
-  return v_.reserve(grown * kBrickVoxels, used_slots_ * kBrickVoxels);
+  const std::size_t ample = std::max({needed, slots() + slots() / 2, kLeast});
+  const Status grown = grow_pools(ample);
+  return !grown.ok() && is_no_room(grown.error()) && needed < ample ? grow_pools(needed) : grown;
+}
+
+Status BrickStore::grow_pools(std::size_t slots) {
+  SACCADE_CHECK(w_.reserve(slots * kBrickVoxels, used_slots_ * kBrickVoxels));
+  SACCADE_CHECK(unknown_.reserve(slots * kBrickWords, used_slots_ * kBrickWords));
+  SACCADE_CHECK(occupied_.reserve(slots * kBrickWords, used_slots_ * kBrickWords));
+  return v_.reserve(slots * kBrickVoxels, used_slots_ * kBrickVoxels);  // last: slots() goes by it
 }
 
 MapView BrickStore::view() const {

@@ -48,6 +48,8 @@ class BrickStore {
     blocks_marked_ = false;
     known_entries_.clear();
   }
+  /// Makes the pools hold this number of bricks.
+  [[nodiscard]] Status grow_pools(std::size_t slots);
   /// Bricks on their way to the device.
   struct Sent;
   [[nodiscard]] Status send(const Sent& sent);

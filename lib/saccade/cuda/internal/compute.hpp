@@ -15,6 +15,11 @@
 
 namespace saccade::internal::cuda {
 
+/// Context of the errors that mean: the device has too little room. Work on a part of the map may succeed where these
+/// come; no other error of a device says so.
+inline constexpr const char* kNoRoom{"memory of the GPU"};
+[[nodiscard]] inline bool is_no_room(const Error& error) { return error.context == kNoRoom; }
+
 /// A device's memory and kernels. One thread at a time.
 class Compute {
  public:
@@ -23,7 +28,10 @@ class Compute {
   Compute& operator=(const Compute&) = delete;
   virtual ~Compute() = default;
 
-  /// Returns memory of undefined content; unavailable where it does not suffice.
+  /// Tells whether the device is gone for good, with its memory: every later call fails.
+  [[nodiscard]] virtual bool is_lost() const { return false; }
+
+  /// Returns memory of undefined content; is_no_room where it does not suffice.
   [[nodiscard]] virtual Result<void*> allocate(std::size_t bytes) = 0;
   virtual void release(void* memory) noexcept = 0;
   [[nodiscard]] virtual Status copy_in(void* to, const void* from, std::size_t bytes) = 0;

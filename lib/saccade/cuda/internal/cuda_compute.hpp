@@ -11,6 +11,8 @@
 
 namespace saccade::internal::cuda {
 
+struct Driver;
+
 /// The kernels as PTX text, made at build time; empty where no clang that compiles CUDA was found.
 [[nodiscard]] std::string_view kernel_ptx();
 /// Names the virtual architecture of the PTX.
@@ -24,5 +26,8 @@ namespace saccade::internal::cuda {
 [[nodiscard]] Result<std::unique_ptr<Compute>> open_cuda(std::string_view ptx = kernel_ptx());
 /// Describes the first device without loading anything onto it.
 [[nodiscard]] Result<CudaDevice> describe_cuda();
+/// Do the same by a driver that is loaded, or that a test provides. It must outlive what it opens.
+[[nodiscard]] Result<std::unique_ptr<Compute>> open_by(const Driver& driver, std::string_view ptx);
+[[nodiscard]] Result<CudaDevice> describe_by(const Driver& driver);
 
 }  // namespace saccade::internal::cuda

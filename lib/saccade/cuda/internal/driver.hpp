@@ -17,6 +17,15 @@ using ModuleHandle = struct CUmod_st*;
 using FunctionHandle = struct CUfunc_st*;
 using StreamHandle = struct CUstream_st*;
 
+/// Meaning of a result of the driver for the work at hand.
+enum class DriverFault {
+  none,
+  no_room,  ///< the GPU's memory does not suffice; all that it holds is intact
+  lost,     ///< the GPU, or the context with all its memory, is gone for good
+  other,    ///< the call alone failed
+};
+[[nodiscard]] DriverFault fault_of(DriverResult result);
+
 /// Functions of libcuda.so.1 by their names there. The parameters are those of the driver API, versions 4.0 to 13.
 struct Driver {
   DriverResult (*cuInit)(unsigned flags);
@@ -34,6 +43,7 @@ struct Driver {
                                      void** values);
   DriverResult (*cuModuleUnload)(ModuleHandle module);
   DriverResult (*cuModuleGetFunction)(FunctionHandle* function, ModuleHandle module, const char* name);
+  DriverResult (*cuFuncGetAttribute)(int* value, int attribute, FunctionHandle function);
   DriverResult (*cuMemAlloc_v2)(DeviceAddress* address, std::size_t bytes);
   DriverResult (*cuMemFree_v2)(DeviceAddress address);
   DriverResult (*cuMemGetInfo_v2)(std::size_t* free_bytes, std::size_t* total_bytes);
@@ -46,10 +56,11 @@ struct Driver {
                                  StreamHandle stream, void** parameters, void** extra);
   DriverResult (*cuCtxSynchronize)();
   DriverResult (*cuGetErrorString)(DriverResult status, const char** text);
+  DriverResult (*cuFuncLoad)(FunctionHandle function);  ///< since 12.4; nullptr in older drivers
 
   /// Returns the library's functions, loaded once per process; unavailable, with the reason, where there is no driver.
   [[nodiscard]] static Result<const Driver*> load();
-  /// Turns a result of the driver into a Status that names what failed.
+  /// Turns a result of the driver into a Status that names what failed; is_no_room where memory did not suffice.
   [[nodiscard]] Status check(DriverResult status, const std::string& action) const;
 };
 

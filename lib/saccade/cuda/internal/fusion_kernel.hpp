@@ -33,8 +33,9 @@ struct FusionArguments {
   std::uint32_t* valid;       ///< number of pixels with a return
   std::uint32_t* in_view;     ///< candidates in view
   std::uint32_t* in_view_count;
-  std::uint32_t* used_slots;  ///< slots taken so far; may grow beyond `slots`, where room is missing
-  std::uint32_t* updated;     ///< bricks with an observed voxel
+  std::uint32_t* without_slot;  ///< number of those that have no slot yet
+  std::uint32_t* used_slots;    ///< slots taken so far; may grow beyond `slots`, where room is missing
+  std::uint32_t* updated;       ///< bricks with an observed voxel
 };
 
 [[nodiscard]] SACCADE_HD inline float as_float(std::uint32_t bits) {
@@ -231,6 +232,7 @@ struct FindBricksInView {
     const BrickEntry entry = a.map.entry(brick);
     const bool saturated = !entry.stored() && entry.weight() == a.free_weight;
     if (saturated && range + radius_m < beams.clear_m) return;  // seen free again, or not at all
+    if (!entry.stored()) atomic_add(*a.without_slot, 1U);
     a.in_view[atomic_add(*a.in_view_count, 1U)] = static_cast<std::uint32_t>(at);
   }
 };

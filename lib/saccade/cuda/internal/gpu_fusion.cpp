@@ -64,6 +64,7 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
   a.reach = counters_.data() + kReach;
   a.valid = counters_.data() + kValid;
   a.in_view_count = counters_.data() + kInView;
+  a.without_slot = counters_.data() + kWithoutSlot;
   a.used_slots = counters_.data() + kUsedSlots;
   a.updated = counters_.data() + kUpdated;
   SACCADE_CHECK(launch<FindRanges>(compute_, FindRanges::blocks(a.camera), a));
@@ -88,12 +89,13 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
     a.map = bricks.view();
     SACCADE_CHECK(launch<FindBricksInView>(compute_, blocks_for<FindBricksInView>(a.candidates.count()), a));
     SACCADE_CHECK(counters_.read(counts));
-    SACCADE_CHECK(bricks.reserve_slots(counts[kInView]));
+    SACCADE_CHECK(bricks.reserve_slots(counts[kWithoutSlot]));  // each of these takes one at most
     SACCADE_CHECK(bricks.reserve_pull());
     a.map = bricks.view();
     a.slots = static_cast<std::uint32_t>(bricks.slots());
-    began_ = true;
-    SACCADE_CHECK(launch<FuseBricks>(compute_, counts[kInView], a));
+    const Status started = launch<FuseBricks>(compute_, counts[kInView], a);
+    began_ = started.ok() || !is_no_room(started.error());  // a kernel without room for itself does not start
+    SACCADE_CHECK(started);
     SACCADE_CHECK(counters_.read(counts));
     bricks.set_used_slots(counts[kUsedSlots]);
     bricks.changed();

@@ -30,14 +30,6 @@ Result<RegionShape> shape_of(const Region& region) {
   return Error{Errc::unsupported, "the GPU evaluates views of spheres and boxes; use the CPU for a cylinder", "cuda"};
 }
 
-/// Windows of the poses within reach, each with the poses whose rays it holds.
-struct Windows {
-  std::vector<GainWindow> windows;
-  std::vector<std::vector<std::size_t>> poses;
-  std::vector<float> coordinates;
-  std::uint64_t tiles{0};
-};
-
 /// Coordinates of all columns and rows by quarter turns, and where each begins in one array.
 class Coordinates {
  public:
@@ -88,9 +80,9 @@ GainWindow window_on_device(const CastWindow& cast, const Coordinates& coordinat
   return window;
 }
 
-Windows windows_of(const TsdfConfig& map, const Region& region, std::span<const Pose> poses,
-                   const PinholeCamera& sensor, const IndexBox& region_voxels, const Executor& executor) {
-  Windows found;
+GainWindows windows_of(const TsdfConfig& map, const Region& region, std::span<const Pose> poses,
+                       const PinholeCamera& sensor, const IndexBox& region_voxels, const Executor& executor) {
+  GainWindows found;
   const Coordinates coordinates{sensor, found.coordinates};
   const double reach = longest_ray_vox(sensor, map.voxel_size_m);
   std::vector<CastWindow> casts(poses.size());
@@ -126,57 +118,74 @@ Windows windows_of(const TsdfConfig& map, const Region& region, std::span<const 
 
 }  // namespace
 
-Result<GainResult> GpuGain::evaluate(const TsdfConfig& map, const Region& region, std::span<const Pose> T_world_camera,
-                                     const GainConfig& config, BrickStore& bricks, const Executor& executor) {
-  const Stopwatch stopwatch;
-  SACCADE_CHECK(check_evaluation(map, region, T_world_camera, config));
+Status check_gains(const Region& region, const GainConfig& config) {
   if (config.count != GainCount::rays) {
     return Error{Errc::unsupported, "the GPU counts rays; use the CPU to count distinct voxels", "cuda"};
   }
+  if (const auto shape = shape_of(region); !shape.ok()) return shape.error();
+  return {};
+}
+
+Result<GainTask> prepare_gains(const TsdfConfig& map, const Region& region, std::span<const Pose> T_world_camera,
+                               const GainConfig& config, const Executor& executor) {
+  const Stopwatch stopwatch;
+  SACCADE_CHECK(check_evaluation(map, region, T_world_camera, config));
+  SACCADE_CHECK(check_gains(region, config));
   const PinholeCamera sensor = widened_vertically(config.sensor, config.tilt_rad);
-  GainArguments a{};
+  GainTask task;
+  task.poses = T_world_camera.size();
+  task.rays_total = std::uint64_t{T_world_camera.size()} * static_cast<std::uint64_t>(sensor.width) *
+                    static_cast<std::uint64_t>(sensor.height);
+  GainArguments& a = task.arguments;
   SACCADE_TRY(a.region, shape_of(region));
   constexpr double kHalfDiagonal_vox{0.8660254037844387};
   constexpr double kSlack_vox{0.05};
   a.radius_vox = static_cast<float>(a.region.b[0] / map.voxel_size_m + kHalfDiagonal_vox + kSlack_vox);
-  GainResult result;
-  result.gains.assign(T_world_camera.size(), 0);
-  result.rays_total = std::uint64_t{T_world_camera.size()} * static_cast<std::uint64_t>(sensor.width) *
-                      static_cast<std::uint64_t>(sensor.height);
   a.region_voxels = region_in_workspace(region, map);
-  Windows windows;
-  if (!a.region_voxels.empty()) windows = windows_of(map, region, T_world_camera, sensor, a.region_voxels, executor);
-  if (windows.tiles > std::numeric_limits<std::int32_t>::max()) {
+  a.has_workspace = map.workspace.has_value();
+  if (a.has_workspace) a.workspace = voxels_with_center_in(*map.workspace, map.voxel_size_m);
+  a.unknown_blocks = config.unknown_outside == UnknownOutside::blocks;
+  a.voxel_size_m = map.voxel_size_m;
+  a.min_t = static_cast<float>(sensor.min_range_m);
+  a.max_t = static_cast<float>(sensor.max_range_m);
+  if (!a.region_voxels.empty()) {
+    task.windows = windows_of(map, region, T_world_camera, sensor, a.region_voxels, executor);
+  }
+  if (task.windows.tiles > std::numeric_limits<std::int32_t>::max()) {
     return Error{Errc::unsupported, "too many rays for one evaluation on the GPU; evaluate fewer poses at a time",
                  "cuda"};
   }
-  if (!windows.windows.empty()) {
-    a.has_workspace = map.workspace.has_value();
-    if (a.has_workspace) a.workspace = voxels_with_center_in(*map.workspace, map.voxel_size_m);
-    a.unknown_blocks = config.unknown_outside == UnknownOutside::blocks;
-    a.voxel_size_m = map.voxel_size_m;
-    a.min_t = static_cast<float>(sensor.min_range_m);
-    a.max_t = static_cast<float>(sensor.max_range_m);
-    SACCADE_CHECK(windows_.assign(windows.windows));
-    SACCADE_CHECK(coordinates_.assign(windows.coordinates));
-    SACCADE_CHECK(gains_.reserve(windows.windows.size()));
-    SACCADE_CHECK(gains_.fill(0, windows.windows.size()));
-    a.windows = windows_.data();
-    a.window_count = static_cast<std::uint32_t>(windows.windows.size());
-    a.coordinates = coordinates_.data();
-    a.gains = gains_.data();
-    SACCADE_CHECK(bricks.mark_blocks());
-    a.map = bricks.view();
-    result.prepare_ms = stopwatch.elapsed_ms();
-    SACCADE_CHECK(launch<CountScoringRays>(compute_, windows.tiles, a));
-    std::vector<std::uint64_t> gains(windows.windows.size());
-    SACCADE_CHECK(gains_.read(gains));
-    for (std::size_t i = 0; i < gains.size(); ++i) {
-      result.rays_cast += std::uint64_t{windows.windows[i].columns} * windows.windows[i].rows;
-      for (const std::size_t pose : windows.poses[i]) result.gains[pose] = gains[i];
-    }
+  task.prepare_ms = stopwatch.elapsed_ms();
+  return task;
+}
+
+Result<GainResult> GpuGain::count(const GainTask& task, BrickStore& bricks) {
+  const Stopwatch stopwatch;
+  const GainWindows& windows = task.windows;
+  GainResult result;
+  result.gains.assign(task.poses, 0);
+  result.rays_total = task.rays_total;
+  result.prepare_ms = task.prepare_ms;
+  if (windows.windows.empty()) return result;
+  GainArguments a = task.arguments;
+  SACCADE_CHECK(windows_.assign(windows.windows));
+  SACCADE_CHECK(coordinates_.assign(windows.coordinates));
+  SACCADE_CHECK(gains_.reserve(windows.windows.size()));
+  SACCADE_CHECK(gains_.fill(0, windows.windows.size()));
+  a.windows = windows_.data();
+  a.window_count = static_cast<std::uint32_t>(windows.windows.size());
+  a.coordinates = coordinates_.data();
+  a.gains = gains_.data();
+  SACCADE_CHECK(bricks.mark_blocks());
+  a.map = bricks.view();
+  SACCADE_CHECK(launch<CountScoringRays>(compute_, windows.tiles, a));
+  std::vector<std::uint64_t> gains(windows.windows.size());
+  SACCADE_CHECK(gains_.read(gains));
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    result.rays_cast += std::uint64_t{windows.windows[i].columns} * windows.windows[i].rows;
+    for (const std::size_t pose : windows.poses[i]) result.gains[pose] = gains[i];
   }
-  result.evaluate_ms = stopwatch.elapsed_ms() - result.prepare_ms;
+  result.evaluate_ms = stopwatch.elapsed_ms();
   return result;
 }
 

@@ -29,18 +29,15 @@ class GpuMap::Impl {
   internal::cuda::GpuRaycast raycast{compute};
   internal::cuda::SurfaceOnDevice surface{compute};
 
-  /// Calls work() with the bricks of a box on the device; a second time with these alone, where memory was short.
+  /// Calls work() with the bricks of a box on the device; a second time with these alone, where memory was short. Work
+  /// that the device cannot do at all must be refused before.
   template <class Work>
   auto with_bricks(const IndexBox& needed, const Work& work) -> decltype(work()) {
     SACCADE_CHECK(bricks.bring_in(needed));
     auto result = work();
-    if (result.ok() || bricks.is_paged() || !may_be_short(result.error())) return result;
+    if (result.ok() || bricks.is_paged() || !internal::cuda::is_no_room(result.error())) return result;
     SACCADE_CHECK(bricks.page_to(needed));
     return work();
-  }
-  /// Tells whether an error may mean that the map is too large for the device.
-  [[nodiscard]] static bool may_be_short(const Error& error) {
-    return error.code == Errc::unavailable || error.code == Errc::unsupported;
   }
 };
 

@@ -16,7 +16,7 @@ Result<void*> HostCompute::allocate(std::size_t bytes) {
     return (bytes + 2 * kHeader - 1) / kHeader * kHeader;
   }());
   if (memory == nullptr) {
-    return Error{Errc::unavailable, "the device has no room for " + std::to_string(bytes) + " bytes more", "cuda"};
+    return Error{Errc::unavailable, "the device has no room for " + std::to_string(bytes) + " bytes more", kNoRoom};
   }
   std::memcpy(memory, &bytes, sizeof(bytes));
   used_bytes_ += bytes;

@@ -15,6 +15,7 @@ class MeteredCompute final : public Compute {
   explicit MeteredCompute(std::unique_ptr<Compute> device) : device_{std::move(device)} {}
   [[nodiscard]] const GpuTraffic& traffic() const { return traffic_; }
 
+  [[nodiscard]] bool is_lost() const override { return device_->is_lost(); }
   [[nodiscard]] Result<void*> allocate(std::size_t bytes) override { return device_->allocate(bytes); }
   void release(void* memory) noexcept override { device_->release(memory); }
   [[nodiscard]] Status copy_in(void* to, const void* from, std::size_t bytes) override {

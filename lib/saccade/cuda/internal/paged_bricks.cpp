@@ -38,7 +38,7 @@ void keep_within(const IndexBox& box, std::vector<SectorBricks>& changes) {
 }  // namespace
 
 Status PagedBricks::check() const {
-  if (!lost_) return {};
+  if (!is_lost()) return {};
   return Error{Errc::unavailable, "the GPU was lost, with what it had fused since the last snapshot", "cuda"};
 }
 
@@ -63,6 +63,10 @@ Status PagedBricks::assign(const TsdfSnapshot& map, const Executor& executor) {
   host_ = map;
   const Status sent = store_->update(map.grid, changes);
   if (sent.ok()) return sent;
+  if (!is_no_room(sent.error())) {
+    lose();
+    return sent;
+  }
   clear();
   paged_ = true;
   page_ = {};
@@ -72,7 +76,7 @@ Status PagedBricks::assign(const TsdfSnapshot& map, const Executor& executor) {
 Result<TsdfSnapshot> PagedBricks::pull() {
   SACCADE_CHECK(check());
   if (const Status pulled = store_->pull(host_); !pulled.ok()) {
-    lose();
+    if (!is_no_room(pulled.error())) lose();  // what was fused is still there, and may come home when there is room
     return pulled.error();
   }
   return host_;

@@ -9,7 +9,7 @@
 namespace saccade::internal::cuda {
 
 /// The bricks on the device, and the host's copy of the map, which lacks what kernels changed since the last pull.
-/// After an error of pull() the device is lost, with what it had changed.
+/// After an error of pull() other than is_no_room the device is lost, with what it had changed.
 class PagedBricks {
  public:
   PagedBricks(Compute& compute, const TsdfConfig& config) : compute_{compute}, host_{config, {}} {
@@ -30,6 +30,7 @@ class PagedBricks {
   [[nodiscard]] Status page_to(const IndexBox& bricks);
   /// Takes the device for lost: every call answers unavailable.
   void lose() { lost_ = true; }
+  [[nodiscard]] bool is_lost() const { return lost_ || compute_.is_lost(); }
   [[nodiscard]] Status check() const;
 
  private:
