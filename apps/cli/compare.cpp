@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compare_run.hpp"
+#include "compare_shards.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -28,8 +29,12 @@ class Compare final : public Command {
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     compare_.out = context.out();
-    SACCADE_TRY(const Comparison comparison, Comparison::create(compare_));
-    return run_campaign(context, comparison,
+    const Result<Comparison> comparison = Comparison::create(compare_);
+    if (!comparison) {
+      record_failed_start(compare_, context.force(), comparison.error());
+      return comparison.error();
+    }
+    return run_campaign(context, *comparison,
                         [](const Campaign&, const ComparedRuns& compared, nlohmann::json&) -> Result<std::string> {
                           std::ostringstream text;
                           print_comparison(text, compared);

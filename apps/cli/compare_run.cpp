@@ -59,7 +59,8 @@ struct CampaignState {
   Campaign campaign;
   CampaignIndex found;     ///< all its runs
   std::size_t planned{0};  ///< runs of the comparison
-  json now;                ///< {done_now}, or after a merge {merged_now, known, shards}
+  json now;                ///< {done_now}, or after a merge {merged_now, known, shards}, and {left_out} where some are
+  std::string left_out{};  ///< for people: runs of shards that a merge left out
 };
 
 /// Runs what is missing, on this machine.
@@ -84,14 +85,13 @@ Result<CampaignState> merge_here(Context& context, const Comparison& comparison)
     SACCADE_TRY(campaign, Campaign::open(*context.folder() / kCampaignFile));
     return &*campaign;
   };
-  SACCADE_TRY(const CampaignMerge merged, merge_shards(comparison, shards, open));
+  SACCADE_TRY(const ShardMerge merged, merge_shards(comparison, shards, open));
   CampaignIndex found;
   SACCADE_CHECK(found.add(*campaign));
   const std::size_t planned = comparison.plan(found).size();
-  return CampaignState{std::move(*campaign),
-                       std::move(found),
-                       planned,
-                       {{"merged_now", merged.added}, {"known", merged.known}, {"shards", shards.size()}}};
+  json now{{"merged_now", merged.added}, {"known", merged.known}, {"shards", shards.size()}};
+  if (merged.left_out > 0) now["left_out"] = merged.left_out;
+  return CampaignState{std::move(*campaign), std::move(found), planned, std::move(now), left_out_text(merged)};
 }
 
 json result_json(const Comparison& comparison, const CampaignState& state, const ComparedRuns& compared) {
@@ -116,7 +116,8 @@ std::string now_text(const CampaignState& state, std::size_t done) {
     return "runs      " + std::to_string(now) + " done now, " + std::to_string(done - now) + " found\n";
   }
   return "runs      " + state.now.at("merged_now").dump() + " merged now, " + state.now.at("known").dump() +
-         " known, " + std::to_string(done) + " of " + std::to_string(state.planned) + " in the campaign\n";
+         " known, " + std::to_string(done) + " of " + std::to_string(state.planned) + " in the campaign\n" +
+         (state.left_out.empty() ? "" : "          " + state.left_out + '\n');
 }
 
 Result<Outcome> report(Context& context, const Comparison& comparison, const CampaignState& state,

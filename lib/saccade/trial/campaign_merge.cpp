@@ -30,11 +30,9 @@ constexpr const char* kStored{
 /// A run whose measures at the end are not those of its last view (of the scan, where it has none), or whose views are
 /// not all there. Both are written once, with the run.
 constexpr const char* kDisagreeing{R"sql(
-SELECT scene, strategy, noise, seed FROM
-  (SELECT runs.*, count(views.run) AS there, min(views.number) AS first, max(views.number) AS last FROM runs
-   LEFT JOIN views ON views.run = runs.id GROUP BY runs.id) AS r
-LEFT JOIN views AS v ON v.run = r.id AND v.number = r.last
-WHERE r.there <> r.views OR r.views <> ifnull(r.last, 0) OR ifnull(r.first, 1) <> 1
+SELECT scene, strategy, noise, seed FROM runs AS r LEFT JOIN views AS v ON v.run = r.id AND v.number = r.views
+WHERE (SELECT count(*) FROM views WHERE run = r.id) <> r.views
+  OR (SELECT count(*) FROM views WHERE run = r.id AND number BETWEEN 1 AND r.views) <> r.views
   OR r.coverage IS NOT iif(r.views = 0, r.initial_coverage, v.coverage)
   OR r.unknown_left IS NOT iif(r.views = 0, r.initial_unknown_left, v.unknown_left)
   OR r.unknown_near_objects IS NOT iif(r.views = 0, r.initial_unknown_near_objects, v.unknown_near_objects)
@@ -51,10 +49,9 @@ struct ColumnRule {
 
 constexpr const char* kNotText{"typeof(%s) <> 'text'"};
 constexpr const char* kNoCount{"typeof(%s) <> 'integer' OR %s < 0"};
-constexpr const char* kNotFinite{"typeof(%s) NOT IN ('real', 'integer') OR abs(%s) > 1.7976931348623157e308"};
-constexpr const char* kNoShare{"typeof(%s) NOT IN ('real', 'integer') OR %s NOT BETWEEN 0 AND 1"};
-constexpr const char* kNeitherNullNorFinite{
-    "typeof(%s) NOT IN ('real', 'integer', 'null') OR abs(%s) > 1.7976931348623157e308"};
+// SQLite takes texts and blobs for greater than all numbers, and no comparison holds for NULL.
+constexpr const char* kNotFinite{"%s NOT BETWEEN -1.7976931348623157e308 AND 1.7976931348623157e308"};
+constexpr const char* kNoShare{"%s NOT BETWEEN 0 AND 1"};
 
 std::vector<ColumnRule> rules_of_runs() {
   return {{kNotText,
@@ -63,10 +60,10 @@ std::vector<ColumnRule> rules_of_runs() {
           {kNoCount,
            {"seed", "views", "scan_views", "initial_unknown_left", "initial_unknown_near_objects", "unknown_left",
             "unknown_near_objects"}},
-          {kNotFinite, {"seconds"}},
           {kNoShare, {"initial_coverage", "coverage"}},
-          {kNeitherNullNorFinite,
-           {"initial_accuracy_m", "initial_chamfer_m", "initial_f_score", "accuracy_m", "chamfer_m", "f_score"}}};
+          {kNotFinite,
+           {"seconds", "initial_accuracy_m", "initial_chamfer_m", "initial_f_score", "accuracy_m", "chamfer_m",
+            "f_score"}}};
 }
 
 std::vector<ColumnRule> rules_of_views() {
@@ -78,7 +75,7 @@ std::vector<ColumnRule> rules_of_views() {
            {"path_m", "motion_s", "planner_map_ms", "candidates_ms", "segmentation_ms", "saliency_ms",
             "reachability_ms", "evaluation_ms", "planning_ms", "motion_ms", "fusion_ms"}},
           {kNoShare, {"coverage"}},
-          {kNeitherNullNorFinite, {"gain", "gain_observed", "accuracy_m", "chamfer_m", "f_score"}}};
+          {kNotFinite, {"gain", "gain_observed", "accuracy_m", "chamfer_m", "f_score"}}};
 }
 
 std::string with_column(std::string rule, const std::string& column) {
@@ -100,10 +97,9 @@ std::string wrong_column(const std::string& table, const std::vector<ColumnRule>
   return text + " END";
 }
 
-/// The first wrong value of a table, with its run.
+/// What is wrong in each row of a table, and its run.
 std::string select_wrong(const std::string& wrong, const std::string& from) {
-  return "SELECT scene, strategy, noise, seed, " + wrong + " AS wrong FROM " + from +
-         " WHERE wrong IS NOT NULL LIMIT 1";
+  return "SELECT " + wrong + ", scene, strategy, noise, seed FROM " + from;
 }
 
 const std::array<std::string, 2>& wrong_values() {
@@ -177,17 +173,23 @@ std::string next_name(SqliteStatement& row) {
   return name_of(key);
 }
 
-Status check_values(const SqliteFile& file) {
-  for (const std::string& query : wrong_values()) {
-    SACCADE_TRY(SqliteStatement wrong, SqliteStatement::prepare(file, query));
-    SACCADE_TRY(const bool found, wrong.step());
-    if (!found) continue;
-    const std::string name = next_name(wrong);
+/// Looks for a wrong value with a query of wrong_values().
+Status check_rows(const SqliteFile& file, const std::string& query) {
+  SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file, query));
+  while (true) {
+    SACCADE_TRY(const bool more, row.step());
+    if (!more) return {};
+    const std::string column = row.text();
+    if (column.empty()) continue;
     return Error{Errc::corrupt_data,
-                 "holds a value of " + wrong.text() + " that the run " + name +
+                 "holds a value of " + column + " that the run " + next_name(row) +
                      " cannot have; it was changed or damaged: move it away, and do its runs again",
                  file.path().string()};
   }
+}
+
+Status check_values(const SqliteFile& file) {
+  for (const std::string& query : wrong_values()) SACCADE_CHECK(check_rows(file, query));
   return {};
 }
 
