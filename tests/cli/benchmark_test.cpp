@@ -34,9 +34,12 @@ TEST(BenchmarkCommand, SaysWhatIsWrong) {
   const Outcome strategy = run_program({"benchmark", "one-shot", "--strategies", "surfaces", "--out", out});
   EXPECT_EQ(strategy.status, 2);
   EXPECT_NE(strategy.err.find("surface-one-shot"), std::string::npos) << strategy.err;
-  const Outcome object = run_program({"benchmark", "view-sphere", "--only", "rabbit", "--out", out});
-  EXPECT_NE(object.status, 0);
-  EXPECT_NE(object.err.find("figure, hare, coil"), std::string::npos) << object.err;
+  const auto only = [&out](const std::string& protocol, const std::string& names, const Arguments& parts) {
+    expect_failure(run_program({"benchmark", protocol, "--only", names, "--out", out}), 2, "benchmark", parts);
+  };
+  only("view-sphere", "rabbit", {"--only", "figure, hare, coil"});
+  only("view-sphere", "hare@4", {"--only", "hare@4"});  // it begins from one view
+  only("one-shot", "jug,hare@5", {"hare@5", "one first view of an object is such as figure@4", "did you mean hare@4?"});
 
   std::ofstream{folder / "BunnyMesh.ply"} << "abc";
   const Outcome mesh = run_program({"benchmark", "view-sphere", "--objects", folder.path().string(), "--out", out});
@@ -46,6 +49,86 @@ TEST(BenchmarkCommand, SaysWhatIsWrong) {
     EXPECT_NE(mesh.err.find(part), std::string::npos) << mesh.err;
   }
   EXPECT_FALSE(fs::exists(out));
+}
+
+TEST(BenchmarkCommand, TakesObjectsAndSingleFirstViewsByTheNamesThatItLists) {
+  const TempFolder folder;
+  const auto listed = [&](const std::string& names) {
+    const Outcome runs = run_program({"benchmark", "one-shot", "--only", names, "--strategies", "random", "--out",
+                                      (folder / "out").string(), "--list", "--json", "-"});
+    EXPECT_EQ(runs.status, 0) << runs.err;
+    const nlohmann::json document = runs.json();
+    Arguments scenes;
+    for (const nlohmann::json& run : document.at("result").at("runs")) scenes.push_back(run.at("scene"));
+    return scenes;
+  };
+  EXPECT_EQ(listed("jug,hare@12"), (Arguments{"hare@12", "jug@4", "jug@12", "jug@20", "jug@28"}));
+  EXPECT_EQ(listed("hare@12,hare@4"), (Arguments{"hare@4", "hare@12"}));
+}
+
+TEST(BenchmarkCommand, RefusesTheSeedThatCampaignsDoNotUse) {
+  const TempFolder folder;
+  const std::string out = (folder / "out").string();
+  expect_failure(run_program({"benchmark", "one-shot", "--seed", "3", "--out", out}), 2, "benchmark",
+                 {"--seed:", "--seeds 3"});
+  expect_failure(run_program({"--seed", "3", "compare", "--scenes", "tabletop-1", "--out", out}), 2, "compare",
+                 {"--seed:", "--seeds 3"});
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST(BenchmarkEvidence, CountsObjectsNotFirstViews) {
+  if (kSanitized) GTEST_SKIP() << "its images have the size of the protocol's";
+  const TempFolder folder;
+  const Outcome done = run_program({"benchmark", "one-shot", "--only", "hare@4,hare@12", "--strategies", "random",
+                                    "--out", (folder / "out").string(), "--quiet", "--json", "-"});
+  ASSERT_EQ(done.status, 0) << done.err;
+  const nlohmann::json benchmark = done.json().at("result").at("benchmark");
+  EXPECT_EQ(benchmark.at("objects"), (Arguments{"hare"}));
+  EXPECT_EQ(benchmark.at("scenes"), (Arguments{"hare@4", "hare@12"}));
+  EXPECT_EQ(benchmark.at("complete"), true);
+  std::size_t ours = 0;
+  for (const nlohmann::json& row : benchmark.at("table")) {
+    if (row.at("published") == true) continue;
+    ++ours;
+    EXPECT_EQ(row.at("of_all").at("n"), 1);  // two starts of one object are no sample of objects
+    EXPECT_TRUE(row.at("of_all").at("low").is_null());
+    EXPECT_GT(row.at("views_taken").at("mean"), 1.0);
+    EXPECT_LE(row.at("views_taken").at("mean"), row.at("views"));
+  }
+  EXPECT_EQ(ours, 2U);  // after 10 views, and after 12
+  // Shortfalls come before figures that are reached.
+  const auto lines = benchmark.at("beside_published").get<Arguments>();
+  EXPECT_EQ(lines.size(), 3U);
+  EXPECT_TRUE(std::is_partitioned(lines.begin(), lines.end(), [](const std::string& line) {
+    return line.find("short of it") != std::string::npos;
+  }));
+}
+
+TEST(BenchmarkCommand, InterruptedItsTableIsOverTheSameObjectsForAllStrategies) {
+  if (kSanitized) GTEST_SKIP() << "its images have the size of the protocol's";
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  RunningProgram program{{"benchmark", "household", "--only", "hare,jug", "--strategies", "random,random-contours",
+                          "--jobs", "1", "--out", out.string()}};
+  ASSERT_TRUE(program.wait_for("hare, random-contours"));  // three of four runs are done
+  program.send(SIGINT);
+  const Outcome interrupted = program.finish();
+  EXPECT_EQ(interrupted.status, 130) << interrupted.err;
+  EXPECT_NE(interrupted.out.find("INCOMPLETE: 3 of 4 runs so far"), std::string::npos) << interrupted.out;
+  EXPECT_NE(interrupted.out.find("the table has 1 run of each strategy"), std::string::npos) << interrupted.out;
+  const nlohmann::json benchmark = report_in(out / "index.html").at("record").at("result").at("benchmark");
+  EXPECT_EQ(benchmark.at("complete"), false);
+  EXPECT_EQ(benchmark.at("runs").dump(), R"({"done":3,"each_strategy":1,"planned":4})");
+  ASSERT_EQ(benchmark.at("table").size(), 2U);
+  for (const nlohmann::json& row : benchmark.at("table")) EXPECT_EQ(row.at("of_all").at("n"), 1);
+  // The row of random is that of the jug alone, though its run of the hare is done.
+  std::ifstream curves{out / "curves.csv"};
+  double of_jug = 0.0;
+  for (std::string line; std::getline(curves, line);) {
+    if (line.starts_with("jug,random,1,6,")) of_jug = std::stod(line.substr(15));
+  }
+  EXPECT_NEAR(benchmark.at("table")[0].at("of_visible").at("mean"), of_jug, 1e-9);
+  EXPECT_GT(of_jug, 0.1);
 }
 
 TEST(BenchmarkCommand, InterruptedOrKilledItKeepsWhatWasDoneAndGoesOn) {

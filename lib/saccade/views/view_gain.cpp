@@ -85,7 +85,7 @@ Status cast_jobs(const GainProblem& problem, GainCount count, const Executor& ex
 
 Result<GainResult> evaluate_views(const TsdfSnapshot& map, const Region& region, std::span<const Pose> T_world_camera,
                                   const GainConfig& config, const Executor& executor, const Progress& progress) {
-  SACCADE_TRY(const GainProblem problem, GainProblem::prepare(map, region, T_world_camera, config, executor));
+  SACCADE_TRY(const GainProblem problem, GainProblem::prepare(map, region, T_world_camera, config, executor, progress));
   GainResult result;
   result.backend = executor.backend_name();
   result.gains.assign(T_world_camera.size(), 0);

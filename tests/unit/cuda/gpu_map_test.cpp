@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "saccade/cuda/internal/gpu_map_impl.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "support/effort.hpp"
@@ -23,6 +25,13 @@ constexpr int kGainRuns{test::scaled_cases(16)};
 
 Executor two_threads() { return Executor::with_threads(2, test::kParallelBackend); }
 
+/// A device whose threads run in another order for each number, since a GPU promises none.
+GpuMap map_in_order(const TsdfConfig& config, std::uint32_t order) {
+  using internal::cuda::HostCompute;
+  return internal::cuda::GpuMapMaker::make(config,
+                                           std::make_unique<HostCompute>(two_threads(), ~std::size_t{0}, order));
+}
+
 TEST(GpuMap, FusesToTheBit) {
   std::size_t bricks{0};
   std::size_t dense{0};
@@ -30,7 +39,7 @@ TEST(GpuMap, FusesToTheBit) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::RandomRun run = test::RandomRun::with_clearing(seed);
     TsdfMap expected = TsdfMap::create(run.config()).value();
-    GpuMap map = GpuMap::create_emulated(run.config(), two_threads()).value();
+    GpuMap map = map_in_order(run.config(), seed - 1);
     for (int frame = 0; frame < kFrames; ++frame) {
       const DepthImage depth = run.depth();
       const Pose T_world_camera = run.pose();
@@ -104,7 +113,7 @@ TEST(GpuMap, GainsEqualThoseOfTheCpuToTheRay) {
     config.tilt_rad = seed % 5 == 0 ? 0.05 : 0.0;
     config.unknown_outside = seed % 2 == 0 ? UnknownOutside::blocks : UnknownOutside::transparent;
     const std::vector<Pose> poses = poses_of(run, 12);
-    GpuMap gpu = GpuMap::create_emulated(map.config, two_threads()).value();
+    GpuMap gpu = map_in_order(map.config, seed - 1);
     ASSERT_TRUE(gpu.assign(map).ok());
     const GainResult expected = evaluate_views(map, region, poses, config, {}).value();
     const auto result = gpu.evaluate_views(region, poses, config, two_threads());
@@ -118,6 +127,92 @@ TEST(GpuMap, GainsEqualThoseOfTheCpuToTheRay) {
   EXPECT_GT(gained, static_cast<std::uint64_t>(compared) / 8);
 }
 
+/// There are more windows of one tile than tiles between two of the hints from the host, and poses that share windows.
+TEST(GpuMap, GainsOfManySmallWindowsEqualThoseOfTheCpu) {
+  test::RandomMap random{7};
+  for (int step = 0; step < 4; ++step) random.step();
+  const TsdfSnapshot map = random.snapshot();
+  const double extent = random.run().extent();
+  const Region region{Sphere{Eigen::Vector3d::Zero(), 0.3 * extent}};
+  GainConfig config;
+  config.sensor = PinholeCamera{8, 8, 8.0, 8.0, 3.5, 3.5, 0.0, 4.0 * extent};
+  std::vector<Pose> poses;
+  for (int i = 0; i < 400; ++i) {
+    poses.push_back(random.run().pose());
+    if (i % 5 == 0) poses.push_back(poses.back());
+  }
+  GpuMap gpu = map_in_order(map.config, 3);
+  ASSERT_TRUE(gpu.assign(map).ok());
+  const GainResult expected = evaluate_views(map, region, poses, config, {}).value();
+  const GainResult result = gpu.evaluate_views(region, poses, config, two_threads()).value();
+  EXPECT_EQ(result.gains, expected.gains);
+  EXPECT_GT(std::count_if(result.gains.begin(), result.gains.end(), [](std::uint64_t gain) { return gain > 0; }), 20);
+  EXPECT_GT(result.rays_cast, 100U * 64U);
+  EXPECT_LE(result.rays_cast, 400U * 64U) << "equal poses share a window";
+}
+
+TEST(GpuMap, QuarterTurnsShareTheirRays) {
+  TsdfConfig map;
+  map.voxel_size_m = 0.02;
+  GpuMap gpu = GpuMap::create_emulated(map, {}).value();
+  GainConfig config;
+  config.sensor = PinholeCamera{32, 32, 30.0, 30.0, 15.5, 15.5, 0.1, 2.0};
+  const Region region{Sphere{{0.0, 0.0, 1.0}, 0.2}};
+  std::vector<Pose> poses{Pose::Identity()};
+  const std::uint64_t alone = gpu.evaluate_views(region, poses, config, {}).value().rays_cast;
+  for (int turns = 1; turns < 4; ++turns) {
+    Eigen::Matrix3d quarter;
+    quarter << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+    poses.push_back(poses.back());
+    poses.back().linear() = quarter * poses.back().linear();
+  }
+  const GainResult result = gpu.evaluate_views(region, poses, config, {}).value();
+  EXPECT_GT(alone, 0U);
+  EXPECT_EQ(result.rays_cast, alone);
+  EXPECT_EQ(result.gains, evaluate_views({map, {}}, region, poses, config, {}).value().gains);
+}
+
+TEST(GpuMap, SurfaceBricksAreMarkedOnceForEachChange) {
+  test::RandomRun run{3};
+  GpuMap gpu = GpuMap::create_emulated(run.config(), {}).value();
+  TsdfMap cpu = TsdfMap::create(run.config()).value();
+  const PinholeCamera camera = run.camera();
+  const Pose T_world_camera = run.pose();
+  const auto kernels_of_cast = [&] {
+    const std::uint64_t before = gpu.traffic().kernels;
+    const SurfaceView view = gpu.raycast(camera, T_world_camera).value();
+    const SurfaceView wanted = raycast(cpu.content(), camera, T_world_camera, {}).value();
+    EXPECT_TRUE(std::equal(view.depth.data(), view.depth.data() + view.depth.size(), wanted.depth.data()));
+    return gpu.traffic().kernels - before;
+  };
+  const DepthImage depth = run.depth();
+  ASSERT_TRUE(gpu.integrate(camera, depth, T_world_camera).ok());
+  ASSERT_TRUE(cpu.integrate(camera, depth, T_world_camera, {}).ok());
+  EXPECT_EQ(kernels_of_cast(), 3U);
+  EXPECT_EQ(kernels_of_cast(), 1U);
+  ASSERT_TRUE(cpu.forget(run.region()).ok());
+  ASSERT_TRUE(cpu.integrate(camera, depth, run.pose(), {}).ok());
+  ASSERT_TRUE(gpu.follow(cpu.content(), {}).ok());
+  EXPECT_EQ(kernels_of_cast(), 3U);
+  EXPECT_EQ(kernels_of_cast(), 1U);
+}
+
+TEST(GpuMap, TheOrderOfThreadsIsAnother) {
+  using internal::cuda::thread_in_order;
+  std::uint32_t same{0};
+  for (std::uint32_t order = 0; order < 20; ++order) {
+    std::vector<bool> taken(128, false);
+    for (std::uint32_t next = 0; next < 128; ++next) {
+      const std::uint32_t index = thread_in_order(next, 128, order, order % 3);
+      ASSERT_LT(index, 128U);
+      EXPECT_FALSE(taken[index]);
+      taken[index] = true;
+      same += index == next ? 1U : 0U;
+    }
+  }
+  EXPECT_LT(same, 128U + 200U);  // all of order 0, and a few
+}
+
 TEST(GpuMap, SurfaceViewsEqualThoseOfTheCpuToTheBit) {
   std::size_t seen{0};
   for (std::uint32_t seed = 1; seed <= kGainRuns; ++seed) {
@@ -125,7 +220,7 @@ TEST(GpuMap, SurfaceViewsEqualThoseOfTheCpuToTheBit) {
     test::RandomMap random{seed};
     for (int step = 0; step < 5; ++step) random.step();
     const TsdfSnapshot map = random.snapshot();
-    GpuMap gpu = GpuMap::create_emulated(map.config, two_threads()).value();
+    GpuMap gpu = map_in_order(map.config, seed - 1);
     ASSERT_TRUE(gpu.assign(map).ok());
     PinholeCamera camera = random.run().camera();
     for (int i = 0; i < 3; ++i) {

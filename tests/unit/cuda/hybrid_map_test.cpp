@@ -217,7 +217,7 @@ TEST(HybridMap, ManyFramesAreTakenHomeInTime) {
   const DepthImage depth{camera.width, camera.height, 0.6F};
   int lost{0};
   constexpr std::size_t kTaken{HybridMap::kMostFrames + 3};
-  for (const int operations : {100'000, 380, 360, 340, 300, 200}) {
+  for (const int operations : {100'000, 340, 315, 300, 270, 200}) {
     SCOPED_TRACE(operations);
     HybridMap map =
         HybridMap::create(config, GpuMapMaker::make(config, std::make_unique<test::LostCompute>(operations))).value();

@@ -119,7 +119,7 @@ TEST(KernelPtx, LimitsOfRegistersAreChangedByName) {
   EXPECT_EQ(with_blocks_per_unit(text, "other", 12), other);
   EXPECT_EQ(with_blocks_per_unit(text, "oth", 12), text);
   if (kernel_ptx().empty()) GTEST_SKIP() << kNoKernels;
-  const std::string changed = with_blocks_per_unit(kernel_ptx(), CountScoringRays::kName, 6);
+  const std::string changed = with_blocks_per_unit(kernel_ptx(), CountScoringRays::kName, 12);
   EXPECT_NE(changed, kernel_ptx());
   EXPECT_TRUE(problems_of(changed).empty());
 }

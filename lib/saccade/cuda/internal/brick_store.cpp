@@ -58,6 +58,8 @@ BrickStore::BrickStore(Compute& compute)
       unknown_{compute},
       occupied_{compute},
       block_stops_{compute},
+      brick_has_cells_{compute},
+      block_has_cells_{compute},
       sent_places_{compute},
       sent_entries_{compute},
       sent_v_{compute},
@@ -127,6 +129,17 @@ Status BrickStore::mark_blocks() {
   SACCADE_CHECK(launch<MarkBlocks>(compute_, blocks_for<MarkBlocks>(blocks_.count()), {view()}));
   blocks_marked_ = true;
   return {};
+}
+
+Result<SurfaceMarks> BrickStore::mark_surface() {
+  SACCADE_CHECK(brick_has_cells_.reserve(bricks_.count()));
+  SACCADE_CHECK(block_has_cells_.reserve(blocks_.count()));
+  const MarkArguments a{view(), {brick_has_cells_.data(), block_has_cells_.data()}};
+  if (surface_marked_) return a.marks;
+  SACCADE_CHECK(launch<MarkSurfaceBricks>(compute_, blocks_for<MarkSurfaceBricks>(bricks_.count()), a));
+  SACCADE_CHECK(launch<MarkSurfaceBlocks>(compute_, blocks_for<MarkSurfaceBlocks>(blocks_.count()), a));
+  surface_marked_ = true;
+  return a.marks;
 }
 
 Status BrickStore::assign(const TsdfSnapshot& map) {
@@ -221,7 +234,7 @@ Status BrickStore::update(const TsdfGrid& map, std::span<const SectorBricks> bri
     if (has_voxels(brick) && !known_entries_[place].stored()) ++added;
   });
   SACCADE_CHECK(reserve_slots(added - std::min(added, free_slots_.size())));
-  blocks_marked_ = false;
+  blocks_marked_ = surface_marked_ = false;
   Sent sent;
   Status failed;
   const auto flush = [&] {

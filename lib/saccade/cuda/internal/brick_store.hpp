@@ -7,6 +7,7 @@
 #include "saccade/cuda/internal/compute.hpp"
 #include "saccade/cuda/internal/device_map.hpp"
 #include "saccade/cuda/internal/place_kernel.hpp"
+#include "saccade/cuda/internal/raycast_kernel.hpp"
 #include "saccade/map/map_changes.hpp"
 #include "saccade/map/tsdf_map.hpp"
 
@@ -35,6 +36,8 @@ class BrickStore {
   }
   /// Marks the blocks of bricks that hold a voxel that is not empty.
   [[nodiscard]] Status mark_blocks();
+  /// Marks where surface cells may be, unless that is done already.
+  [[nodiscard]] Result<SurfaceMarks> mark_surface();
 
   [[nodiscard]] Status assign(const TsdfSnapshot& map);
   /// Replaces the content of some bricks by that of a map, and leaves all others. Sends what these bricks hold alone.
@@ -45,7 +48,7 @@ class BrickStore {
 
  private:
   void forget_copies() {
-    blocks_marked_ = false;
+    blocks_marked_ = surface_marked_ = false;
     known_entries_.clear();
   }
   /// Makes the pools hold this number of bricks.
@@ -66,6 +69,7 @@ class BrickStore {
   TableBox blocks_{};
   std::size_t used_slots_{0};
   bool blocks_marked_{false};
+  bool surface_marked_{false};
   bool may_be_touched_{false};
   Buffer<BrickEntry> entries_;
   Buffer<std::uint8_t> touched_;
@@ -74,6 +78,8 @@ class BrickStore {
   Buffer<std::uint64_t> unknown_;
   Buffer<std::uint64_t> occupied_;
   Buffer<std::uint8_t> block_stops_;
+  Buffer<std::uint8_t> brick_has_cells_;
+  Buffer<std::uint8_t> block_has_cells_;
   std::vector<BrickEntry> known_entries_;  ///< copy of the table; empty: the host has none
   std::vector<std::uint32_t> free_slots_;  ///< slots that no entry names
   Buffer<std::uint64_t> sent_places_;

@@ -53,8 +53,9 @@ template <class Kernel>
 class HostCompute final : public Compute {
  public:
   /// @param memory_bytes  limit of what may be allocated at a time.
-  explicit HostCompute(Executor executor, std::size_t memory_bytes = ~std::size_t{0})
-      : executor_{std::move(executor)}, memory_bytes_{memory_bytes} {}
+  /// @param order         order of a block's threads and of the blocks: 0 by index, else one for each number.
+  explicit HostCompute(Executor executor, std::size_t memory_bytes = ~std::size_t{0}, std::uint32_t order = 0)
+      : executor_{std::move(executor)}, memory_bytes_{memory_bytes}, order_{order} {}
   [[nodiscard]] Result<void*> allocate(std::size_t bytes) override;
   void release(void* memory) noexcept override;
   [[nodiscard]] Status copy_in(void* to, const void* from, std::size_t bytes) override;
@@ -68,6 +69,7 @@ class HostCompute final : public Compute {
   Executor executor_;
   std::size_t memory_bytes_;
   std::size_t used_bytes_{0};
+  std::uint32_t order_;
 };
 
 /// Array in a device's memory; grows and never shrinks. The Compute must outlive it.

@@ -25,6 +25,7 @@ struct FusionArguments {
   float clearing_share;
   TableBox candidates;        ///< bricks that may be in view
   std::uint32_t slots;        ///< room of the pools
+  std::uint32_t first_slot;   ///< slots that were taken before this frame
   const float* depths_m;      ///< depth of each pixel, row by row
   float* ranges_m;            ///< likewise
   std::uint32_t* tile_reach;  ///< bits of the largest reach in each tile of pixels
@@ -34,7 +35,7 @@ struct FusionArguments {
   std::uint32_t* in_view;     ///< candidates in view
   std::uint32_t* in_view_count;
   std::uint32_t* without_slot;  ///< number of those that have no slot yet
-  std::uint32_t* used_slots;    ///< slots taken so far; may grow beyond `slots`, where room is missing
+  std::uint32_t* new_slots;     ///< slots that this frame takes
   std::uint32_t* updated;       ///< bricks with an observed voxel
 };
 
@@ -80,7 +81,8 @@ constexpr std::uint8_t kClearByte{0x7F};  ///< four of them are a range beyond e
   return (static_cast<std::uint32_t>(pixels) + kPixelTile - 1) / kPixelTile;
 }
 
-/// Turns depths into ranges, a pixel per thread and half a tile per block (fusion::ranges_of_row).
+/// Turns depths into ranges, a pixel per thread and a tile per block (fusion::ranges_of_row). Nothing but the counters
+/// has to be cleared before.
 struct FindRanges {
   using Arguments = FusionArguments;
   struct Shared {
@@ -89,15 +91,9 @@ struct FindRanges {
     std::uint32_t valid;
   };
   static constexpr const char* kName{"saccade_find_ranges"};
-  static constexpr unsigned kThreads{128};
+  static constexpr unsigned kThreads{kPixelTile * kPixelTile};
   static constexpr unsigned kBlocksPerUnit{1};
   static constexpr int kPhases{3};
-
-  static constexpr std::uint32_t kRows{kThreads / kPixelTile};
-
-  [[nodiscard]] static std::size_t blocks(const tsdf::FusionCamera& camera) {
-    return std::size_t{pixel_tiles(camera.width)} * pixel_tiles(camera.height) * (kPixelTile / kRows);
-  }
 
   template <int kPhase>
   static SACCADE_HD void run(const Arguments& a, Shared& shared, const Thread& thread) {
@@ -106,7 +102,7 @@ struct FindRanges {
       if (thread.index == 0) shared = {0, kClearByte * 0x01010101U, 0};
     } else if constexpr (kPhase == 1) {
       const auto u = static_cast<int>(thread.block % tiles_across * kPixelTile + thread.index % kPixelTile);
-      const auto v = static_cast<int>(thread.block / tiles_across * kRows + thread.index / kPixelTile);
+      const auto v = static_cast<int>(thread.block / tiles_across * kPixelTile + thread.index / kPixelTile);
       if (u >= a.camera.width || v >= a.camera.height) return;
       const int pixel = v * a.camera.width + u;
       const float depth = a.depths_m[pixel];
@@ -122,10 +118,8 @@ struct FindRanges {
       if (range > 0.0F) atomic_min(shared.clear, as_bits(in_front > 0.0F ? in_front : 0.0F));
       if (range < 0.0F) atomic_min(shared.clear, as_bits(-range));
     } else if (thread.index == 0) {
-      const std::uint32_t tile =
-          thread.block / tiles_across / (kPixelTile / kRows) * tiles_across + thread.block % tiles_across;
-      atomic_max(a.tile_reach[tile], shared.reach);
-      atomic_min(a.tile_clear[tile], shared.clear);
+      a.tile_reach[thread.block] = shared.reach;
+      a.tile_clear[thread.block] = shared.clear;
       atomic_max(*a.reach, shared.reach);
       if (shared.valid != 0) atomic_add(*a.valid, shared.valid);
     }
@@ -245,8 +239,10 @@ struct FuseBricks {
   static constexpr unsigned kEach{kBrickVoxels / kThreads};
   struct Shared {
     std::int16_t samples[kBrickVoxels];
-    std::uint64_t unknown[kBrickWords];
-    std::uint64_t occupied[kBrickWords];
+    std::uint32_t unknown[2 * kBrickWords];  ///< halves of words, low one first: 32 bits are the GPU's own atomics
+    std::uint32_t occupied[2 * kBrickWords];
+    std::int32_t brick[3];
+    std::uint64_t place;     ///< index into the table
     std::uint32_t seen;      ///< number of voxels
     std::uint32_t seen_one;  ///< number of voxels with a sample of 1
     BrickEntry before;
@@ -257,18 +253,19 @@ struct FuseBricks {
   static constexpr unsigned kBlocksPerUnit{1};
   static constexpr int kPhases{5};
 
-  [[nodiscard]] static SACCADE_HD std::uint64_t table_index(const Arguments& a, const Thread& thread) {
-    return a.map.bricks.at(a.candidates.index(a.in_view[thread.block]));
-  }
-
   template <int kPhase>
   static SACCADE_HD void run(const Arguments& a, Shared& shared, const Thread& thread) {
     if (thread.block >= *a.in_view_count) return;
     if constexpr (kPhase == 0) {
-      if (thread.index < kBrickWords) shared.unknown[thread.index] = shared.occupied[thread.index] = 0;
+      if (thread.index < 2 * kBrickWords) shared.unknown[thread.index] = shared.occupied[thread.index] = 0;
       if (thread.index == 0) {
         shared.seen = shared.seen_one = 0;
-        shared.before = a.map.entries[table_index(a, thread)];
+        const Index3 brick = a.candidates.index(a.in_view[thread.block]);
+        shared.brick[0] = brick.x;
+        shared.brick[1] = brick.y;
+        shared.brick[2] = brick.z;
+        shared.place = a.map.bricks.at(brick);
+        shared.before = a.map.entries[shared.place];
         shared.update = false;
       }
     } else if constexpr (kPhase == 1) {
@@ -280,13 +277,13 @@ struct FuseBricks {
     } else if (shared.update) {
       write_masks(a, shared, thread);
     } else if (thread.index == 0 && shared.after.bits != shared.before.bits) {
-      a.map.entries[table_index(a, thread)] = shared.after;
-      a.map.touched[table_index(a, thread)] = 1;
+      a.map.entries[shared.place] = shared.after;
+      a.map.touched[shared.place] = 1;
     }
   }
 
   static SACCADE_HD void sample(const Arguments& a, Shared& shared, const Thread& thread) {
-    const Index3 brick = a.candidates.index(a.in_view[thread.block]);
+    const Index3 brick{shared.brick[0], shared.brick[1], shared.brick[2]};
     const tsdf::BrickFrame frame{center_in_camera(a, brick * kBrickEdge), a.steps[0], a.steps[1], a.steps[2]};
     std::uint32_t seen{0};
     std::uint32_t seen_one{0};
@@ -315,8 +312,8 @@ struct FuseBricks {
         shared.after = BrickEntry::free(shared.before.weight() + 1);
         return;
       }
-      const std::uint32_t slot = atomic_add(*a.used_slots, 1U);
-      if (slot >= a.slots) return;  // the caller makes room first; see DeviceMap::integrate
+      const std::uint32_t slot = a.first_slot + atomic_add(*a.new_slots, 1U);
+      if (slot >= a.slots) return;  // the caller makes room first; see GpuFusion::integrate
       shared.after = BrickEntry::at(slot, true, false);
     }
     shared.update = true;
@@ -340,27 +337,30 @@ struct FuseBricks {
         stored_v = v;
         stored_w = w;
       }
-      if (w == 0) atomic_or(shared.unknown[i >> 6U], std::uint64_t{1} << (i & 63U));
-      if (w != 0 && v <= 0) atomic_or(shared.occupied[i >> 6U], std::uint64_t{1} << (i & 63U));
+      if (w == 0) atomic_or(shared.unknown[i >> 5U], 1U << (i & 31U));
+      if (w != 0 && v <= 0) atomic_or(shared.occupied[i >> 5U], 1U << (i & 31U));
     }
+  }
+
+  [[nodiscard]] static SACCADE_HD std::uint64_t word_of(const std::uint32_t (&halves)[2 * kBrickWords], unsigned word) {
+    return std::uint64_t{halves[2 * word]} | std::uint64_t{halves[2 * word + 1]} << 32U;
   }
 
   static SACCADE_HD void write_masks(const Arguments& a, const Shared& shared, const Thread& thread) {
     const std::uint64_t slot = shared.after.slot();
     if (thread.index < kBrickWords) {
-      a.map.unknown[slot * kBrickWords + thread.index] = shared.unknown[thread.index];
-      a.map.occupied[slot * kBrickWords + thread.index] = shared.occupied[thread.index];
+      a.map.unknown[slot * kBrickWords + thread.index] = word_of(shared.unknown, thread.index);
+      a.map.occupied[slot * kBrickWords + thread.index] = word_of(shared.occupied, thread.index);
     }
     if (thread.index == 0) {
-      std::uint64_t unknown{0};
-      std::uint64_t occupied{0};
-      for (int word = 0; word < kBrickWords; ++word) {
-        unknown |= shared.unknown[word];
-        occupied |= shared.occupied[word];
+      std::uint32_t unknown{0};
+      std::uint32_t occupied{0};
+      for (int half = 0; half < 2 * kBrickWords; ++half) {
+        unknown |= shared.unknown[half];
+        occupied |= shared.occupied[half];
       }
-      a.map.entries[table_index(a, thread)] =
-          BrickEntry::at(shared.after.slot(), (unknown | occupied) != 0, occupied != 0);
-      a.map.touched[table_index(a, thread)] = 1;
+      a.map.entries[shared.place] = BrickEntry::at(shared.after.slot(), (unknown | occupied) != 0, occupied != 0);
+      a.map.touched[shared.place] = 1;
     }
   }
 };

@@ -48,7 +48,8 @@ struct GainWindow {
 };
 
 constexpr std::uint32_t kTileColumns{8};
-constexpr std::uint32_t kTileRows{16};
+constexpr std::uint32_t kTileRows{8};
+constexpr std::uint32_t kTilesPerHint{64};  ///< tiles for which the host names one window to look from
 
 struct GainArguments {
   MapView map;
@@ -63,6 +64,7 @@ struct GainArguments {
   float max_t;
   const GainWindow* windows;
   std::uint32_t window_count;
+  const std::uint32_t* first_windows;  ///< for each kTilesPerHint tiles: the window of the first of them
   const float* coordinates;
   std::uint64_t* gains;  ///< one per window
 };
@@ -95,8 +97,11 @@ struct GainArguments {
     if (entry.stored()) {
       const int child = child_index(voxel);
       const std::uint64_t word = std::uint64_t{entry.slot()} * kBrickWords + static_cast<std::uint64_t>(child >> 6);
-      is_unknown = (map.unknown[word] >> (child & 63) & 1U) != 0;
-      if (!is_unknown && (map.occupied[word] >> (child & 63) & 1U) == 0) return false;
+      // Both at once: most voxels on the way are empty, and a second wait for memory would follow the first.
+      const std::uint64_t unknown = map.unknown[word] >> (child & 63);
+      const std::uint64_t occupied = map.occupied[word] >> (child & 63);
+      if (((unknown | occupied) & 1U) == 0) return false;
+      is_unknown = (unknown & 1U) != 0;
     }
     const bool may_score = is_unknown && a.region.contains(voxel, a.voxel_size_m);
     if (is_unknown && !may_score && !a.unknown_blocks) return false;
@@ -122,33 +127,30 @@ struct CountScoringRays {
   using Arguments = GainArguments;
   struct Shared {
     std::uint32_t scoring;
+    std::uint32_t window;
+    std::uint32_t tile;  ///< its number in the window
   };
   static constexpr const char* kName{"saccade_count_scoring_rays"};
   static constexpr unsigned kThreads{kTileColumns * kTileRows};
-  static constexpr unsigned kBlocksPerUnit{1};
+  static constexpr unsigned kBlocksPerUnit{10};  // 96 registers; one block more spills some
   static constexpr int kPhases{3};
 
+  /// Finds a tile's window from the host's hint; every window has a tile, so that it is near.
   [[nodiscard]] static SACCADE_HD std::uint32_t window_of(const Arguments& a, std::uint32_t tile) {
-    std::uint32_t first{0};
-    std::uint32_t last{a.window_count - 1};
-    while (first < last) {
-      const std::uint32_t middle = (first + last + 1) / 2;
-      if (a.windows[middle].first_tile <= tile) {
-        first = middle;
-      } else {
-        last = middle - 1;
-      }
-    }
-    return first;
+    std::uint32_t window = a.first_windows[tile / kTilesPerHint];
+    while (window + 1 < a.window_count && a.windows[window + 1].first_tile <= tile) ++window;
+    return window;
   }
 
   template <int kPhase>
   static SACCADE_HD void run(const Arguments& a, Shared& shared, const Thread& thread) {
     if constexpr (kPhase == 0) {
-      if (thread.index == 0) shared.scoring = 0;
+      if (thread.index != 0) return;
+      const std::uint32_t window = window_of(a, thread.block);
+      shared = {0, window, thread.block - a.windows[window].first_tile};
     } else if constexpr (kPhase == 1) {
-      const GainWindow& window = a.windows[window_of(a, thread.block)];
-      const std::uint32_t tile = thread.block - window.first_tile;
+      const GainWindow& window = a.windows[shared.window];
+      const std::uint32_t tile = shared.tile;
       const std::uint32_t tiles_across = (window.columns + kTileColumns - 1) / kTileColumns;
       const std::uint32_t column = tile % tiles_across * kTileColumns + thread.index % kTileColumns;
       const std::uint32_t row = tile / tiles_across * kTileRows + thread.index / kTileColumns;
@@ -162,7 +164,7 @@ struct CountScoringRays {
       if (ray_scores(a, ray)) atomic_add(shared.scoring, 1U);
     } else {
       if (thread.index == 0 && shared.scoring != 0) {
-        atomic_add(a.gains[window_of(a, thread.block)], std::uint64_t{shared.scoring});
+        atomic_add(a.gains[shared.window], std::uint64_t{shared.scoring});
       }
     }
   }

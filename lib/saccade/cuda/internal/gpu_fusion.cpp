@@ -48,26 +48,24 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
   SACCADE_CHECK(depths_m_.assign({depth.data(), depth.size()}));
   SACCADE_CHECK(ranges_m_.reserve(depth.size()));
   std::array<std::uint32_t, kCounters> counts{};
-  counts[kUsedSlots] = static_cast<std::uint32_t>(bricks.used_slots());
-  SACCADE_CHECK(counters_.assign(counts));
+  SACCADE_CHECK(counters_.reserve(kCounters));
+  SACCADE_CHECK(counters_.fill(0, kCounters));
 
   FusionArguments a = fusion_arguments(config, camera, T_world_camera);
   a.depths_m = depths_m_.data();
   a.ranges_m = ranges_m_.data();
   const std::size_t tiles = std::size_t{pixel_tiles(camera.width)} * pixel_tiles(camera.height);
   SACCADE_CHECK(tile_reach_.reserve(tiles));
-  SACCADE_CHECK(tile_reach_.fill(0, tiles));
   SACCADE_CHECK(tile_clear_.reserve(tiles));
-  SACCADE_CHECK(tile_clear_.fill(kClearByte, tiles));
   a.tile_reach = tile_reach_.data();
   a.tile_clear = tile_clear_.data();
   a.reach = counters_.data() + kReach;
   a.valid = counters_.data() + kValid;
   a.in_view_count = counters_.data() + kInView;
   a.without_slot = counters_.data() + kWithoutSlot;
-  a.used_slots = counters_.data() + kUsedSlots;
+  a.new_slots = counters_.data() + kNewSlots;
   a.updated = counters_.data() + kUpdated;
-  SACCADE_CHECK(launch<FindRanges>(compute_, FindRanges::blocks(a.camera), a));
+  SACCADE_CHECK(launch<FindRanges>(compute_, tiles, a));
   SACCADE_CHECK(counters_.read(counts));
   FusionStats stats;
   stats.valid_pixels = counts[kValid];
@@ -76,10 +74,6 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
     SACCADE_TRY(const IndexBox sectors, sectors_in_frustum(a.camera, T_world_camera, reach_m, config.voxel_size_m));
     const IndexBox candidates{sectors.lo * kSectorEdge, sectors.hi * kSectorEdge};
     if (bring_in) SACCADE_CHECK(bring_in(candidates));
-    if (counts[kUsedSlots] != bricks.used_slots()) {
-      counts[kUsedSlots] = static_cast<std::uint32_t>(bricks.used_slots());
-      SACCADE_CHECK(counters_.assign(counts));
-    }
     SACCADE_CHECK(bricks.cover(candidates));
     const Index3 size = candidates.size();
     a.candidates = {candidates.lo, static_cast<std::uint32_t>(size.x), static_cast<std::uint32_t>(size.y),
@@ -93,15 +87,15 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
     SACCADE_CHECK(bricks.reserve_pull());
     a.map = bricks.view();
     a.slots = static_cast<std::uint32_t>(bricks.slots());
+    a.first_slot = static_cast<std::uint32_t>(bricks.used_slots());
     const Status started = launch<FuseBricks>(compute_, counts[kInView], a);
     began_ = started.ok() || !is_no_room(started.error());  // a kernel without room for itself does not start
     SACCADE_CHECK(started);
-    SACCADE_CHECK(counters_.read(counts));
-    bricks.set_used_slots(counts[kUsedSlots]);
+    SACCADE_CHECK(counters_.read(counts));  // waits for the kernels
+    bricks.set_used_slots(bricks.used_slots() + counts[kNewSlots]);
     bricks.changed();
     stats.bricks_updated = counts[kUpdated];
   }
-  SACCADE_CHECK(compute_.finish());
   began_ = false;
   stats.ms = stopwatch.elapsed_ms();
   return stats;

@@ -32,7 +32,7 @@ class GpuFusion {
 
  private:
   /// Numbers that the kernels of a frame count, in device memory.
-  enum Counter : std::size_t { kReach, kValid, kInView, kWithoutSlot, kUsedSlots, kUpdated, kCounters };
+  enum Counter : std::size_t { kReach, kValid, kInView, kWithoutSlot, kNewSlots, kUpdated, kCounters };
 
   Compute& compute_;
   bool began_{false};

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 #include "saccade/core/clock.hpp"
@@ -80,6 +80,8 @@ GainWindow window_on_device(const CastWindow& cast, const Coordinates& coordinat
   return window;
 }
 
+constexpr std::uint64_t kMostTiles{std::numeric_limits<std::int32_t>::max()};
+
 GainWindows windows_of(const TsdfConfig& map, const Region& region, std::span<const Pose> poses,
                        const PinholeCamera& sensor, const IndexBox& region_voxels, const Executor& executor) {
   GainWindows found;
@@ -94,8 +96,8 @@ GainWindows windows_of(const TsdfConfig& map, const Region& region, std::span<co
       casts[i] = window_of(rays, coordinates.axes(rays.quarter_turns), region_voxels, region, map.voxel_size_m);
     }
   });
-  std::map<LatticeKey, std::vector<std::size_t>> known;  // windows by lattice
-  std::vector<std::size_t> first_pose;                   // first pose of each window
+  std::unordered_map<LatticeKey, std::vector<std::size_t>, LatticeHash> known;  // windows by lattice
+  std::vector<std::size_t> first_pose;                                          // first pose of each window
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (casts[i].empty()) continue;
     std::vector<std::size_t>& same_lattice = known[key_of(casts[i].rays)];
@@ -112,6 +114,9 @@ GainWindows windows_of(const TsdfConfig& map, const Region& region, std::span<co
     window.first_tile = static_cast<std::uint32_t>(found.tiles);
     found.tiles +=
         std::uint64_t{(window.columns + kTileColumns - 1) / kTileColumns} * ((window.rows + kTileRows - 1) / kTileRows);
+    if (found.tiles > kMostTiles) break;  // refused by the caller
+    while (found.first_windows.size() * kTilesPerHint < found.tiles)
+      found.first_windows.push_back(static_cast<std::uint32_t>(found.windows.size() - 1));
   }
   return found;
 }
@@ -151,7 +156,7 @@ Result<GainTask> prepare_gains(const TsdfConfig& map, const Region& region, std:
   if (!a.region_voxels.empty()) {
     task.windows = windows_of(map, region, T_world_camera, sensor, a.region_voxels, executor);
   }
-  if (task.windows.tiles > std::numeric_limits<std::int32_t>::max()) {
+  if (task.windows.tiles > kMostTiles) {
     return Error{Errc::unsupported, "too many rays for one evaluation on the GPU; evaluate fewer poses at a time",
                  "cuda"};
   }
@@ -169,10 +174,12 @@ Result<GainResult> GpuGain::count(const GainTask& task, BrickStore& bricks) {
   if (windows.windows.empty()) return result;
   GainArguments a = task.arguments;
   SACCADE_CHECK(windows_.assign(windows.windows));
+  SACCADE_CHECK(first_windows_.assign(windows.first_windows));
   SACCADE_CHECK(coordinates_.assign(windows.coordinates));
   SACCADE_CHECK(gains_.reserve(windows.windows.size()));
   SACCADE_CHECK(gains_.fill(0, windows.windows.size()));
   a.windows = windows_.data();
+  a.first_windows = first_windows_.data();
   a.window_count = static_cast<std::uint32_t>(windows.windows.size());
   a.coordinates = coordinates_.data();
   a.gains = gains_.data();

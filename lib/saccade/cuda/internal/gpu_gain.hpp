@@ -16,6 +16,7 @@ struct GainWindows {
   std::vector<GainWindow> windows;
   std::vector<std::vector<std::size_t>> poses;
   std::vector<float> coordinates;
+  std::vector<std::uint32_t> first_windows;  ///< see GainArguments
   std::uint64_t tiles{0};
 };
 
@@ -38,13 +39,15 @@ struct GainTask {
 /// Buffers of an evaluation, which stay for the next.
 class GpuGain {
  public:
-  explicit GpuGain(Compute& compute) : compute_{compute}, windows_{compute}, coordinates_{compute}, gains_{compute} {}
+  explicit GpuGain(Compute& compute)
+      : compute_{compute}, windows_{compute}, first_windows_{compute}, coordinates_{compute}, gains_{compute} {}
 
   [[nodiscard]] Result<GainResult> count(const GainTask& task, BrickStore& bricks);
 
  private:
   Compute& compute_;
   Buffer<GainWindow> windows_;
+  Buffer<std::uint32_t> first_windows_;
   Buffer<float> coordinates_;
   Buffer<std::uint64_t> gains_;
 };

@@ -29,7 +29,7 @@ SurfaceArguments surface_arguments(const TsdfConfig& config, const PinholeCamera
 }  // namespace
 
 Result<SurfaceView> GpuRaycast::cast(const TsdfConfig& config, const PinholeCamera& camera, const Pose& T_world_camera,
-                                     const BrickStore& bricks) {
+                                     BrickStore& bricks) {
   SACCADE_CHECK(camera.validate());
   if (const auto checked = pose_from_matrix(T_world_camera.matrix()); !checked) return checked.error();
   SurfaceView view;
@@ -45,16 +45,11 @@ Result<SurfaceView> GpuRaycast::cast(const TsdfConfig& config, const PinholeCame
   SACCADE_CHECK(coordinates_.assign(coordinates));
   a.ray_x = coordinates_.data();
   a.ray_y = coordinates_.data() + camera.width;
-  SACCADE_CHECK(brick_has_cells_.reserve(a.map.bricks.count()));
-  SACCADE_CHECK(block_has_cells_.reserve(a.map.blocks.count()));
-  a.brick_has_cells = brick_has_cells_.data();
-  a.block_has_cells = block_has_cells_.data();
+  SACCADE_TRY(a.marks, bricks.mark_surface());
   SACCADE_CHECK(depths_m_.reserve(view.depth.size()));
   SACCADE_CHECK(normals_.reserve(3 * view.depth.size()));
   a.depths_m = depths_m_.data();
   a.normals = normals_.data();
-  SACCADE_CHECK(launch<MarkSurfaceBricks>(compute_, blocks_for<MarkSurfaceBricks>(a.map.bricks.count()), a));
-  SACCADE_CHECK(launch<MarkSurfaceBlocks>(compute_, blocks_for<MarkSurfaceBlocks>(a.map.blocks.count()), a));
   const std::size_t tiles = std::size_t{(a.width + CastSurfaceRays::kColumns - 1) / CastSurfaceRays::kColumns} *
                             ((a.height + CastSurfaceRays::kRows - 1) / CastSurfaceRays::kRows);
   SACCADE_CHECK(launch<CastSurfaceRays>(compute_, tiles, a));

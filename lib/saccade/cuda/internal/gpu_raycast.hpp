@@ -12,20 +12,13 @@ namespace saccade::internal::cuda {
 class GpuRaycast {
  public:
   explicit GpuRaycast(Compute& compute)
-      : compute_{compute},
-        brick_has_cells_{compute},
-        block_has_cells_{compute},
-        coordinates_{compute},
-        depths_m_{compute},
-        normals_{compute} {}
+      : compute_{compute}, coordinates_{compute}, depths_m_{compute}, normals_{compute} {}
 
   [[nodiscard]] Result<SurfaceView> cast(const TsdfConfig& config, const PinholeCamera& camera,
-                                         const Pose& T_world_camera, const BrickStore& bricks);
+                                         const Pose& T_world_camera, BrickStore& bricks);
 
  private:
   Compute& compute_;
-  Buffer<std::uint8_t> brick_has_cells_;
-  Buffer<std::uint8_t> block_has_cells_;
   Buffer<double> coordinates_;
   Buffer<float> depths_m_;
   Buffer<float> normals_;

@@ -52,7 +52,10 @@ Status HostCompute::launch(const KernelEntry& kernel, std::size_t blocks, const 
   constexpr std::size_t kBlocksAtATime{16};
   executor_.parallel_for(blocks, kBlocksAtATime, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
-      kernel.run_block(arguments, static_cast<std::uint32_t>(block));
+      const std::size_t next = order_ % 2 == 0 ? block : blocks - 1 - block;
+      // Each block and launch in its own order: the launches of a kernel differ in nothing else.
+      const std::uint32_t order = order_ == 0 ? 0 : order_ + static_cast<std::uint32_t>(next) * 7U + 1U;
+      kernel.run_block(arguments, static_cast<std::uint32_t>(next), order);
     }
   });
   return {};

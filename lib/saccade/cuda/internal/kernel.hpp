@@ -44,15 +44,26 @@ struct KernelEntry {
   const char* name;
   unsigned threads;
   std::size_t argument_bytes;
-  void (*run_block)(const void* arguments, std::uint32_t block);
+  void (*run_block)(const void* arguments, std::uint32_t block, std::uint32_t order);
 };
 
+/// Tells which of `count` threads, a power of two, comes next in a phase. @param order 0: by index; else another order
+/// for each number and phase, since a GPU promises none.
+[[nodiscard]] constexpr std::uint32_t thread_in_order(std::uint32_t next, std::uint32_t count, std::uint32_t order,
+                                                      std::uint32_t phase) {
+  if (order == 0) return next;
+  const std::uint32_t mixed = (order + phase) * 0x9E3779B9U;
+  return ((next * (mixed >> 8U | 1U)) ^ mixed >> 20U) & (count - 1);  // each step maps the threads one to one
+}
+
 template <class Kernel>
-void run_block(const void* arguments, std::uint32_t block) {
+void run_block(const void* arguments, std::uint32_t block, std::uint32_t order) {
+  static_assert((Kernel::kThreads & (Kernel::kThreads - 1)) == 0);
   const auto& of_kernel = *static_cast<const typename Kernel::Arguments*>(arguments);
   typename Kernel::Shared shared;
   for_each_phase<Kernel>([&](auto phase) {
-    for (std::uint32_t index = 0; index < Kernel::kThreads; ++index) {
+    for (std::uint32_t next = 0; next < Kernel::kThreads; ++next) {
+      const std::uint32_t index = thread_in_order(next, Kernel::kThreads, order, decltype(phase)::value);
       Kernel::template run<decltype(phase)::value>(of_kernel, shared, Thread{block, index});
     }
   });

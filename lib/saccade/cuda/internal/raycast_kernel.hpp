@@ -12,12 +12,22 @@
 
 namespace saccade::internal::cuda {
 
+/// Where surface cells may be.
+struct SurfaceMarks {
+  std::uint8_t* bricks;  ///< one per brick of the table: whether it may hold a cell with an occupied corner
+  std::uint8_t* blocks;  ///< one per block of bricks
+};
+
+struct MarkArguments {
+  MapView map;
+  SurfaceMarks marks;
+};
+
 struct SurfaceArguments {
   MapView map;
-  std::uint8_t* brick_has_cells;  ///< one per brick of the table: whether it may hold a cell with an occupied corner
-  std::uint8_t* block_has_cells;  ///< one per block of bricks
-  LatticePoint origin;            ///< in the lattice of the cells
-  double per_cell[3][3];          ///< from camera directions to cells
+  SurfaceMarks marks;
+  LatticePoint origin;    ///< in the lattice of the cells
+  double per_cell[3][3];  ///< from camera directions to cells
   float R_camera_world[3][3];
   const double* ray_x;  ///< x of a ray by column
   const double* ray_y;  ///< y by row
@@ -31,7 +41,7 @@ struct SurfaceArguments {
 
 /// Marks bricks that may hold a surface cell: those with an occupied voxel in them or in a neighbour ahead.
 struct MarkSurfaceBricks {
-  using Arguments = SurfaceArguments;
+  using Arguments = MarkArguments;
   struct Shared {};
   static constexpr const char* kName{"saccade_mark_surface_bricks"};
   static constexpr unsigned kThreads{128};
@@ -48,13 +58,13 @@ struct MarkSurfaceBricks {
       const BrickEntry entry = a.map.entry(brick + Index3{i & 1, (i >> 1) & 1, (i >> 2) & 1});
       occupied = occupied || (entry.stored() && (entry.bits & BrickEntry::kOccupied) != 0);
     }
-    a.brick_has_cells[at] = occupied ? 1 : 0;
+    a.marks.bricks[at] = occupied ? 1 : 0;
   }
 };
 
 /// Marks blocks with a marked brick.
 struct MarkSurfaceBlocks {
-  using Arguments = SurfaceArguments;
+  using Arguments = MarkArguments;
   struct Shared {};
   static constexpr const char* kName{"saccade_mark_surface_blocks"};
   static constexpr unsigned kThreads{128};
@@ -69,9 +79,9 @@ struct MarkSurfaceBlocks {
     std::uint8_t any{0};
     for (int i = 0; i < kBlockBrickEdge * kBlockBrickEdge * kBlockBrickEdge; ++i) {
       const Index3 brick = first + Index3{i & 3, (i >> 2) & 3, i >> 4};
-      if (a.map.bricks.contains(brick)) any |= a.brick_has_cells[a.map.bricks.at(brick)];
+      if (a.map.bricks.contains(brick)) any |= a.marks.bricks[a.map.bricks.at(brick)];
     }
-    a.block_has_cells[at] = any;
+    a.marks.blocks[at] = any;
   }
 };
 
@@ -197,7 +207,7 @@ struct CastSurfaceRays {
       return crossing != CellCrossing::none;
     };
     const auto visit_brick = [&](const Index3& brick, const RaySpan& in_brick) {
-      if (!map.bricks.contains(brick) || a.brick_has_cells[map.bricks.at(brick)] == 0) return false;
+      if (!map.bricks.contains(brick) || a.marks.bricks[map.bricks.at(brick)] == 0) return false;
       const BrickEntry entry = map.entry(brick);
       return walk_cells<kVoxelLevel>(ray, in_brick, [&](const Index3& index, const RaySpan& in_cell) {
         return visit_cell(entry, index, in_cell);
@@ -214,7 +224,7 @@ struct CastSurfaceRays {
     inside = inside.until(span.exit);
     if (inside.empty()) return false;
     walk_cells<kBlockLevel>(ray, inside, [&](const Index3& block, const RaySpan& in_block) {
-      if (!map.blocks.contains(block) || a.block_has_cells[map.blocks.at(block)] == 0) return false;
+      if (!map.blocks.contains(block) || a.marks.blocks[map.blocks.at(block)] == 0) return false;
       return walk_cells<kBrickLevel>(ray, in_block, visit_brick);
     });
     return crossing == CellCrossing::front;

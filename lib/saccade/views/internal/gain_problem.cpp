@@ -5,8 +5,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <numbers>
+#include <unordered_map>
 
 #include "saccade/core/clock.hpp"
 
@@ -64,7 +64,7 @@ Views views_within_reach(std::span<const Pose> poses, const IndexBox& region, do
 void make_jobs(const Views& views, const Region& region, const GainSavings& savings, GainProblem& problem) {
   const StopGrid& grid = problem.grid;
   std::vector<GainJob>& jobs = problem.jobs;
-  std::map<LatticeKey, std::size_t> lattices;
+  std::unordered_map<LatticeKey, std::size_t, LatticeHash> lattices;
   for (std::size_t i = 0; i < views.poses.size(); ++i) {
     const SensorRays& rays = views.rays[i];
     if (savings.blocked_camera && grid.stops(rays.origin.voxel)) continue;
@@ -145,8 +145,12 @@ Status check_evaluation(const TsdfConfig& map, const Region& region, std::span<c
 
 Result<GainProblem> GainProblem::prepare(const TsdfSnapshot& map, const Region& region,
                                          std::span<const Pose> T_world_camera, const GainConfig& config,
-                                         const Executor& executor) {
+                                         const Executor& executor, const Progress& progress) {
   Stopwatch clock;
+  const auto check_cancelled = [&]() -> Status {
+    if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", std::string{kEvaluation}};
+    return {};
+  };
   const double voxel_size_m = map.config.voxel_size_m;
   SACCADE_CHECK(check_evaluation(map.config, region, T_world_camera, config));
   const PinholeCamera sensor = widened_vertically(config.sensor, config.tilt_rad);
@@ -161,9 +165,12 @@ Result<GainProblem> GainProblem::prepare(const TsdfSnapshot& map, const Region& 
   if (region_voxels.empty()) return problem;
   const Views views = views_within_reach(T_world_camera, region_voxels, reach, voxel_size_m);
   if (views.poses.empty()) return problem;
+  SACCADE_CHECK(check_cancelled());
   SACCADE_TRY(problem.grid, StopGrid::build(map, region, config.unknown_outside, views.domain,
                                             config.savings.exposed_voxels, executor));
+  SACCADE_CHECK(check_cancelled());
   if (config.savings.footprints) problem.faces = EntryFaces{problem.grid, executor};
+  SACCADE_CHECK(check_cancelled());
   for (int turns = 0; turns < 4; ++turns) problem.axes[static_cast<std::size_t>(turns)] = pixel_axes(sensor, turns);
   if (!problem.grid.scoring_voxels().empty()) make_jobs(views, region, config.savings, problem);
   problem.prepare_ms = clock.lap_ms();

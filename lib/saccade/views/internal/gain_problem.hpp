@@ -3,6 +3,7 @@
 // GainProblem: rays to cast and voxels they meet, derived from poses, region and map.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -28,6 +29,13 @@ inline constexpr std::string_view kEvaluation{"view evaluation"};
 /// Bits of a lattice of rays: equal where SensorRays::same_lattice holds.
 using LatticeKey = std::array<std::uint32_t, 15>;
 [[nodiscard]] LatticeKey key_of(const SensorRays& rays);
+struct LatticeHash {
+  [[nodiscard]] std::size_t operator()(const LatticeKey& key) const {
+    std::uint64_t hash{0};
+    for (const std::uint32_t word : key) hash = (std::rotl(hash, 5) ^ word) * 0x9E3779B97F4A7C15ULL;
+    return static_cast<std::size_t>(hash ^ hash >> 32U);
+  }
+};
 
 /// Answers the errors of evaluate_views.
 [[nodiscard]] Status check_evaluation(const TsdfConfig& map, const Region& region, std::span<const Pose> T_world_camera,
@@ -51,10 +59,11 @@ struct GainProblem {
   std::uint64_t rays_total{0};  ///< pixels of all poses
   double prepare_ms{0.0};
 
-  /// Prepares the problem. Errors of evaluate_views.
+  /// Prepares the problem. Errors of evaluate_views; cancelled between the parts of the work, where a large region
+  /// takes most of the time.
   [[nodiscard]] static Result<GainProblem> prepare(const TsdfSnapshot& map, const Region& region,
                                                    std::span<const Pose> T_world_camera, const GainConfig& config,
-                                                   const Executor& executor);
+                                                   const Executor& executor, const Progress& progress = {});
 };
 
 }  // namespace saccade
