@@ -2,8 +2,7 @@
 // The program of scripts/gpu_check.sh, for a machine with a GPU: times on the thesis' table, then parity with the CPU
 // to the bit on random maps. Prints JSON, a line for each part as soon as it is known, so that a run that is cut off
 // leaves what it found; exit status 1 where a bit differs, 2 where there is no GPU. --emulated runs the kernels on the
-// host,
-// --quick fewer of them.
+// host, --quick fewer of them.
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -5,6 +5,7 @@
 
 #include "benchmark_output.hpp"
 #include "compare_run.hpp"
+#include "compare_shards.hpp"
 #include "saccade/core/nearest_word.hpp"
 
 namespace saccade::cli {
@@ -159,9 +160,11 @@ class BenchmarkCommand final : public Command {
     if (name_.empty()) return Outcome{.result = benchmark_list_json(), .text = benchmark_list()};
     std::optional<std::filesystem::path> objects;
     if (!objects_.empty()) objects = objects_;
-    SACCADE_TRY(BenchmarkPlan plan, plan_benchmark(benchmark_, objects));
+    compare_.out = context.out();
+    SACCADE_TRY(BenchmarkPlan plan, recorded(context, compare_, plan_benchmark(benchmark_, objects)));
     if (!wanted_.empty()) SACCADE_CHECK(keep_only(plan, benchmark_, wanted_, objects_));
-    SACCADE_TRY(const Comparison comparison, Comparison::create(options_for(context, plan), plan.scenes));
+    SACCADE_TRY(const Comparison comparison,
+                recorded(context, compare_, Comparison::create(options_for(plan), plan.scenes)));
     return run_campaign(context, comparison,
                         [&](const Campaign& campaign, const ComparedRuns& compared, nlohmann::json& result) {
                           return report(context, plan, comparison, campaign, compared, result);
@@ -169,9 +172,8 @@ class BenchmarkCommand final : public Command {
   }
 
  private:
-  CompareOptions options_for(const Context& context, const BenchmarkPlan& plan) const {
+  CompareOptions options_for(const BenchmarkPlan& plan) const {
     CompareOptions options = compare_;
-    options.out = context.out();
     options.run.run = plan.run;
     options.noises = {noise_key(plan.run)};
     // A protocol ends a run after its number of views; scenes of their own are explored as elsewhere.

@@ -29,12 +29,8 @@ class Compare final : public Command {
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     compare_.out = context.out();
-    const Result<Comparison> comparison = Comparison::create(compare_);
-    if (!comparison) {
-      record_failed_start(compare_, context.force(), comparison.error());
-      return comparison.error();
-    }
-    return run_campaign(context, *comparison,
+    SACCADE_TRY(const Comparison comparison, recorded(context, compare_, Comparison::create(compare_)));
+    return run_campaign(context, comparison,
                         [](const Campaign&, const ComparedRuns& compared, nlohmann::json&) -> Result<std::string> {
                           std::ostringstream text;
                           print_comparison(text, compared);

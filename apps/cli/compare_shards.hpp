@@ -15,6 +15,12 @@ namespace saccade::cli {
 /// Notes in the record of the slice that is asked for, if one is, that it failed before it began: its scenes or its arm
 /// cannot be read. Leaves everything as it is where the record cannot be written.
 void record_failed_start(const CompareOptions& options, bool force, const Error& error);
+/// Returns what is needed to begin; where that failed, the record of the slice tells so (record_failed_start).
+template <class T>
+[[nodiscard]] Result<T> recorded(const Context& context, const CompareOptions& options, Result<T> needed) {
+  if (!needed) record_failed_start(options, context.force(), needed.error());
+  return needed;
+}
 
 /// Runs that are done, in the campaign of a folder and in these shards. Runs in shards that another version of Saccade
 /// made do not count, since they cannot be merged.

@@ -8,6 +8,7 @@ namespace {
 
 Result<GainResult> evaluate_on_gpu(const TsdfSnapshot& map, const Region& region, std::span<const Pose> T_world_camera,
                                    const GainConfig& config, const Executor& executor) {
+  SACCADE_CHECK(GpuMap::can_evaluate(region, config));  // before a GPU is opened in vain
   SACCADE_TRY(GpuMap gpu, GpuMap::create(map.config));
   SACCADE_CHECK(gpu.assign(map));
   return gpu.evaluate_views(region, T_world_camera, config, executor);

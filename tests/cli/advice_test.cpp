@@ -13,8 +13,8 @@ namespace {
 TEST(Advice, ARepeatedProblemIsSaidOnceWithACount) {
   const TempFolder folder;
   make_sample(folder / "frames", 3);
-  const Outcome outcome =
-      run_program({"filter", (folder / "frames").string(), "--out", (folder / "out").string(), "--quiet"});
+  const Outcome outcome = run_program(
+      {"filter", (folder / "frames").string(), "--camera", "kinect-v2", "--out", (folder / "out").string(), "--quiet"});
   expect_failure(outcome, 3, "filter",
                  {"and 2 more: has 160x120 pixels", "filter is for the depth images of a Kinect v2"});
   const std::string& text = outcome.err;

@@ -185,6 +185,22 @@ TEST(CompareSlices, AFolderThatIsNoCampaignIsRefused) {
                  {"no shards to merge", "slice 0 of 2", "scene.yaml: there is no such file"});
 }
 
+TEST(CompareSlices, ASliceThatCannotBeginLeavesARecord) {
+  const TempFolder folder;
+  const std::vector<Arguments> commands{
+      {"compare", "--scenes", (folder / "gone.yaml").string(), "--strategies", "sphere"},
+      {"benchmark", "view-sphere", "--objects", (folder / "gone").string()}};
+  for (const Arguments& command : commands) {
+    const fs::path out = folder / command.front();
+    Arguments all = command;
+    all.insert(all.end(), {"--out", out.string(), "--shard", "0/2"});
+    expect_failure(run_program(all), 3, command.front(), {"gone"});
+    const auto record = nlohmann::json::parse(std::ifstream{out / "shards/0-of-2/shard.json"});
+    EXPECT_EQ(record.at("state"), "failed");
+    EXPECT_NE(record.at("error").get<std::string>().find("gone"), std::string::npos) << record;
+  }
+}
+
 TEST(CompareSlices, TheNumberOfATaskIsTheSlice) {
   const TempFolder folder;
   const fs::path out = folder / "out";
