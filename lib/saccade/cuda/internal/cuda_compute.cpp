@@ -88,7 +88,7 @@ class CudaCompute final : public Compute {
   /// first started (since 12.2), which takes memory: a full GPU could not be emptied by kernels that never ran.
   [[nodiscard]] Status load(const std::string& ptx) {
     const Current current{*this};
-    SACCADE_CHECK(current.status());
+    if (!current.status().ok()) return current.status().error();
     SACCADE_CHECK(compile(ptx));
 #define SACCADE_LOAD(name, Kernel) SACCADE_CHECK(load_kernel(Kernel::kName));
     SACCADE_ALL_KERNELS(SACCADE_LOAD)
@@ -163,7 +163,7 @@ class CudaCompute final : public Compute {
   [[nodiscard]] Status call(const std::string& action, const Function& function) {
     if (lost_) return Error{Errc::unavailable, action + " failed: the GPU was lost before", "cuda"};
     const Current current{*this};
-    SACCADE_CHECK(current.status());
+    if (!current.status().ok()) return current.status().error();
     return checked(function(), action);
   }
   /// As Driver::check; remembers the loss of the GPU.

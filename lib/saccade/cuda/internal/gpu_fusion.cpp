@@ -90,7 +90,7 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
     a.first_slot = static_cast<std::uint32_t>(bricks.used_slots());
     const Status started = launch<FuseBricks>(compute_, counts[kInView], a);
     began_ = started.ok() || !is_no_room(started.error());  // a kernel without room for itself does not start
-    SACCADE_CHECK(started);
+    if (!started) return started.error();
     SACCADE_CHECK(counters_.read(counts));  // waits for the kernels
     bricks.set_used_slots(bricks.used_slots() + counts[kNewSlots]);
     bricks.changed();
