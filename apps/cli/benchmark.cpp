@@ -19,10 +19,13 @@ Planners benchmark_planners(const Planners& planners) {
 }
 
 /// Names of the objects that a protocol may have.
-std::vector<std::string> object_names(const Benchmark& benchmark, bool from_meshes) {
+std::vector<std::string> object_names(const Benchmark& benchmark, bool from_folder,
+                                      const std::vector<std::filesystem::path>& own) {
   if (benchmark.has_own_scenes()) return benchmark.scenes;
-  if (!from_meshes) return benchmark.stand_ins;
   std::vector<std::string> names;
+  for (const std::filesystem::path& mesh : own) names.push_back(mesh.stem().string());
+  if (!names.empty()) return names;
+  if (!from_folder) return benchmark.stand_ins;
   for (const BenchmarkMesh& mesh : benchmark.meshes) names.push_back(std::filesystem::path{mesh.file}.stem().string());
   return names;
 }
@@ -41,8 +44,8 @@ std::vector<std::string> start_names(const Benchmark& benchmark) {
 }
 
 /// Throws a usage error for what is neither an object nor an object and one of its first views.
-void check_wanted(const std::vector<std::string>& wanted, const Benchmark& benchmark, bool from_meshes) {
-  const std::vector<std::string> objects = object_names(benchmark, from_meshes);
+void check_wanted(const std::vector<std::string>& wanted, const Benchmark& benchmark,
+                  const std::vector<std::string>& objects) {
   std::vector<std::string> names = objects;
   for (const std::string& start : start_names(benchmark)) {
     for (const std::string& object : objects) names.push_back(object + start);
@@ -53,6 +56,24 @@ void check_wanted(const std::vector<std::string>& wanted, const Benchmark& bench
     if (names.size() > objects.size()) message += "; one first view of an object is such as " + names[objects.size()];
     usage_error("--only", message + did_you_mean(name, std::vector<std::string_view>{names.begin(), names.end()}));
   }
+}
+
+/// The mesh files that --meshes names, those of its folders included.
+std::vector<std::filesystem::path> named_meshes(const std::string& text) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : list_parts("--meshes", text)) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(name, ignored)) {
+      const auto found = mesh_files(name);
+      if (!found) usage_error("--meshes", found.error().context + ": " + found.error().message);
+      files.insert(files.end(), found->begin(), found->end());
+      continue;
+    }
+    if (!is_mesh_file(name))
+      usage_error("--meshes", name + ": is neither a folder nor a mesh (PLY, STL, OBJ, GLB, glTF, OFF, DAE)");
+    files.emplace_back(name);
+  }
+  return files;
 }
 
 /// Leaves the named objects, with all their first views, and the named scenes. not_found for one whose mesh is not
@@ -125,6 +146,12 @@ class BenchmarkCommand final : public Command {
     request_ = &options.request();
     options.value("--objects", objects_, "DIR",
                   "folder with the protocol's meshes, which are checked by their MD5; without it stand-ins are made");
+    options
+        .value("--meshes", meshes_, "LIST",
+               "any other meshes instead of the protocol's, files and folders of them, separated by commas; their "
+               "figures stand beside one another alone")
+        .excludes("--objects");
+    add_mesh_options(options.group(), compare_.mesh);
     options.value("--strategies", compare_.strategy_list, "LIST",
                   "strategies instead of the protocol's, separated by commas; the first is set beside published "
                   "figures. surface-one-shot chooses all views at once");
@@ -148,7 +175,9 @@ class BenchmarkCommand final : public Command {
     if (request_->path.empty()) usage_error("--out", "a folder for the results is needed");
     benchmark_ = *found;
     if (!only_.empty()) wanted_ = list_parts("--only", only_);
-    if (!wanted_.empty()) check_wanted(wanted_, benchmark_, !objects_.empty());
+    require_ok(compare_.mesh.validate(), "--mesh-scale");
+    if (!meshes_.empty()) own_meshes_ = named_meshes(meshes_);
+    if (!wanted_.empty()) check_wanted(wanted_, benchmark_, object_names(benchmark_, !objects_.empty(), own_meshes_));
     check_campaign_options(compare_);
     const std::string names =
         compare_.strategy_list.empty() ? joined(benchmark_.strategies, ",") : compare_.strategy_list;
@@ -158,10 +187,8 @@ class BenchmarkCommand final : public Command {
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
     if (name_.empty()) return Outcome{.result = benchmark_list_json(), .text = benchmark_list()};
-    std::optional<std::filesystem::path> objects;
-    if (!objects_.empty()) objects = objects_;
     compare_.out = context.out();
-    SACCADE_TRY(BenchmarkPlan plan, recorded(context, compare_, plan_benchmark(benchmark_, objects)));
+    SACCADE_TRY(BenchmarkPlan plan, recorded(context, compare_, plan_of_objects()));
     if (!wanted_.empty()) SACCADE_CHECK(keep_only(plan, benchmark_, wanted_, objects_));
     SACCADE_TRY(const Comparison comparison,
                 recorded(context, compare_, Comparison::create(options_for(plan), plan.scenes)));
@@ -172,6 +199,11 @@ class BenchmarkCommand final : public Command {
   }
 
  private:
+  [[nodiscard]] Result<BenchmarkPlan> plan_of_objects() const {
+    if (!own_meshes_.empty()) return plan_benchmark(benchmark_, own_meshes_, compare_.mesh);
+    return plan_benchmark(benchmark_, objects_.empty() ? std::nullopt : std::optional<std::filesystem::path>{objects_});
+  }
+
   CompareOptions options_for(const BenchmarkPlan& plan) const {
     CompareOptions options = compare_;
     options.run.run = plan.run;
@@ -198,6 +230,8 @@ class BenchmarkCommand final : public Command {
 
   std::string name_;
   std::string objects_;
+  std::string meshes_;
+  std::vector<std::filesystem::path> own_meshes_;  ///< what meshes_ names
   std::string only_;
   std::vector<std::string> wanted_;  ///< parts of only_
   const CLI::App* command_{nullptr};

@@ -156,6 +156,15 @@ std::string objects_text(const Benchmark& benchmark, const BenchmarkPlan& plan) 
   return text;
 }
 
+/// Says why our figures and the published ones are about different objects.
+std::string other_objects_text(ObjectSource objects) {
+  if (objects == ObjectSource::own) {
+    return "OTHER OBJECTS: these are not those of the publications, so our figures and theirs cannot be compared\n";
+  }
+  return "STAND-INS: these objects are made by rule and are not those of the publications, so our figures and theirs "
+         "cannot be compared;\n          --objects DIR takes the published meshes, --meshes LIST any others\n";
+}
+
 /// Says what the table of an interrupted benchmark is over.
 std::string incomplete_text(const BenchmarkTable& table) {
   std::string text = "INCOMPLETE: " + std::to_string(table.done) + " of " + std::to_string(table.planned) +
@@ -263,7 +272,8 @@ BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<Mea
   return table;
 }
 
-std::vector<std::string> beside_published(const Benchmark& benchmark, const BenchmarkTable& table, bool stand_ins) {
+std::vector<std::string> beside_published(const Benchmark& benchmark, const BenchmarkTable& table,
+                                          ObjectSource objects) {
   if (!table.is_complete() || table.rows.empty() || table.rows.front().published) return {};
   const std::string& ours = table.rows.front().method;
   std::vector<std::string> short_of;
@@ -282,7 +292,7 @@ std::vector<std::string> beside_published(const Benchmark& benchmark, const Benc
             fixed(100.0 * row->of_all->mean, 1) + " % of all; " + figure.method + " " +
             fixed(100.0 * figure.coverage, 1) + " % after " + views_text(figure.views) + ": ";
     line += gap >= 0.0 ? "not below it" : "short of it by " + fixed(-100.0 * gap, 1) + " points of all";
-    if (stand_ins) line += " (other objects)";
+    if (objects != ObjectSource::published) line += " (other objects)";
     (gap >= 0.0 ? reached : short_of).push_back(std::move(line));
   }
   short_of.insert(short_of.end(), reached.begin(), reached.end());
@@ -293,10 +303,7 @@ std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan
   std::ostringstream text;
   text << "benchmark " << benchmark.name << ", version " << benchmark.version << ": " << benchmark.text << '\n';
   text << "objects   " << objects_text(benchmark, plan) << '\n';
-  if (plan.stand_ins) {
-    text << "STAND-INS: these objects are made by rule and are not those of the publications, so our figures and "
-            "theirs cannot be compared;\n          --objects DIR takes the published meshes\n";
-  }
+  if (plan.objects != ObjectSource::published) text << other_objects_text(plan.objects);
   if (!table.is_complete()) text << incomplete_text(table);
   text << what_counts(benchmark) << "\n\n";
   print_rows(text, benchmark, table);
@@ -309,7 +316,7 @@ std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan
     if (!told.insert(figure.differs).second) continue;
     text << "what differs from [" << source_number(benchmark, figure.source) << "]: " << figure.differs << '\n';
   }
-  for (const std::string& line : beside_published(benchmark, table, plan.stand_ins)) text << line << '\n';
+  for (const std::string& line : beside_published(benchmark, table, plan.objects)) text << line << '\n';
   return text.str();
 }
 
@@ -324,18 +331,18 @@ json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan, const
           {"measure", what_counts(benchmark)},
           {"objects", objects_of(benchmark, plan.scenes)},
           {"scenes", std::move(scenes)},
-          {"stand_ins", plan.stand_ins},
+          {"objects_from", kObjectSourceNames.of(plan.objects)},
           {"views_in_all", benchmark.views_in_all},
           {"runs", {{"planned", table.planned}, {"done", table.done}, {"each_strategy", table.each_strategy}}},
           {"complete", table.is_complete()},
           {"table", std::move(rows)},
-          {"beside_published", beside_published(benchmark, table, plan.stand_ins)},
+          {"beside_published", beside_published(benchmark, table, plan.objects)},
           {"not_published", benchmark.not_published}};
 }
 
 Status write_benchmark(const std::filesystem::path& folder, const Benchmark& benchmark, const BenchmarkPlan& plan,
                        const BenchmarkTable& table, const std::vector<MeasuredRun>& measured) {
-  CsvTable rows{{"benchmark", "version", "stand_ins", "complete", "method", "views", "views_taken", "of_visible",
+  CsvTable rows{{"benchmark", "version", "objects_from", "complete", "method", "views", "views_taken", "of_visible",
                  "of_all", "objects", "path_m", "motion_s", "published", "year", "source", "object", "differs"}};
   const auto mean_of = [](const std::optional<MeanEstimate>& estimate) {
     return estimate && estimate->n > 0 ? std::optional{estimate->mean} : std::nullopt;
@@ -343,7 +350,10 @@ Status write_benchmark(const std::filesystem::path& folder, const Benchmark& ben
   for (const BenchmarkRow& row : table.rows) {
     const std::optional<PublishedFigure>& figure = row.published;
     rows.add(benchmark.name).add(static_cast<std::uint64_t>(benchmark.version));
-    rows.add(plan.stand_ins ? "yes" : "no").add(table.is_complete() ? "yes" : "no").add(row.method).add(row.views);
+    rows.add(std::string{kObjectSourceNames.of(plan.objects)})
+        .add(table.is_complete() ? "yes" : "no")
+        .add(row.method)
+        .add(row.views);
     rows.add(mean_of(row.taken)).add(mean_of(row.of_visible)).add(mean_of(row.of_all));
     rows.add(row.of_visible ? std::optional{static_cast<double>(row.of_visible->n)} : std::nullopt);
     rows.add(mean_of(row.path_m)).add(mean_of(row.motion_s));

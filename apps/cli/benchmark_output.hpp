@@ -56,13 +56,13 @@ struct BenchmarkTable {
 /// Says how the first strategy compares with each published figure at its number of views: short of it, which comes
 /// first, or reached. The first view is given and not compared. Nothing is said before all runs are done.
 [[nodiscard]] std::vector<std::string> beside_published(const Benchmark& benchmark, const BenchmarkTable& table,
-                                                        bool stand_ins);
+                                                        ObjectSource objects);
 
 /// The table and what goes with it, for people.
 [[nodiscard]] std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan,
                                          const BenchmarkTable& table);
 
-/// {name, version, objects, scenes, stand_ins, runs: {…}, table: […], beside_published: […], …}
+/// {name, version, objects, objects_from, scenes, runs: {…}, table: […], beside_published: […], …}
 [[nodiscard]] nlohmann::json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan,
                                             const BenchmarkTable& table);
 

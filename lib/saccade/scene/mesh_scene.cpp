@@ -41,7 +41,13 @@ std::string size_text(const Eigen::Vector3d& size_m) {
   return text.str();
 }
 
-/// Turns a closed surface that is inside out: what can be seen of an object goes by its outward normals.
+Eigen::AlignedBox3d bounds_of_vertices(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex.cast<double>());
+  return bounds;
+}
+
+/// Turns a closed surface that is inside out.
 void turn_outside_out(TriangleMesh& mesh, const Eigen::Vector3d& middle) {
   constexpr double kClosed{1e-3};  // the area vectors of a closed surface cancel out
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
@@ -85,36 +91,42 @@ Status MeshSceneConfig::validate() const {
   return Error{Errc::invalid_argument, "the scale of a mesh must be positive", "mesh scene"};
 }
 
-Result<Scene> mesh_scene(const fs::path& path, const MeshSceneConfig& config) {
-  SACCADE_CHECK(config.validate());
+Result<TriangleMesh> read_upright_mesh(const fs::path& path, std::optional<UpAxis> up) {
   SACCADE_TRY(TriangleMesh mesh, read_any_mesh(path));
   if (mesh.triangles.empty()) return Error{Errc::corrupt_data, "the file has no triangles", path.string()};
-  const char up = config.up ? (*config.up == UpAxis::y ? 'y' : 'z') : stated_up_axis(path).value_or('z');
+  const char axis = up ? (*up == UpAxis::y ? 'y' : 'z') : stated_up_axis(path).value_or('z');
   bool finite{true};
-  Eigen::AlignedBox3d bounds;
   for (Eigen::Vector3f& vertex : mesh.vertices) {
-    vertex = upright_vertex(vertex, up);
+    vertex = upright_vertex(vertex, axis);
     finite = finite && vertex.allFinite();
-    bounds.extend(vertex.cast<double>());
   }
   if (!finite) return Error{Errc::corrupt_data, "a coordinate of the mesh is not finite", path.string()};
-  const Eigen::Vector3d size_m = config.scale * bounds.sizes();
-  if (!fits(size_m)) {
-    const std::string hint = scale_hint(bounds.sizes());
-    return Error{
-        Errc::invalid_argument,
-        "the object measures " + size_text(size_m) + "; on the table there is room for " +
-            size_text({kMostMeshLength_m, kMostMeshWidth_m, kMostMeshHeight_m}) + ", and " +
-            std::to_string(std::lround(100.0 * kLeastMeshSize_m)) + " cm are the least" +
-            (hint.empty() ? "; scale it" : "; a scale of " + hint + " would do: --mesh-scale of explore and compare"),
-        path.string()};
-  }
+  mesh.normals.clear();
+  turn_outside_out(mesh, bounds_of_vertices(mesh).center());
+  return mesh;
+}
+
+Status check_object_size(const Eigen::Vector3d& size, double scale, const fs::path& file) {
+  const Eigen::Vector3d size_m = scale * size;
+  if (fits(size_m)) return {};
+  const std::string hint = scale_hint(size);
+  return Error{Errc::invalid_argument,
+               "the object measures " + size_text(size_m) + "; on the table there is room for " +
+                   size_text({kMostMeshLength_m, kMostMeshWidth_m, kMostMeshHeight_m}) + ", and " +
+                   std::to_string(std::lround(100.0 * kLeastMeshSize_m)) + " cm are the least" +
+                   (hint.empty() ? "; scale it" : "; a scale of " + hint + " would do: --mesh-scale"),
+               file.string()};
+}
+
+Result<Scene> mesh_scene(const fs::path& path, const MeshSceneConfig& config) {
+  SACCADE_CHECK(config.validate());
+  SACCADE_TRY(TriangleMesh mesh, read_upright_mesh(path, config.up));
+  const Eigen::AlignedBox3d bounds = bounds_of_vertices(mesh);
+  SACCADE_CHECK(check_object_size(bounds.sizes(), config.scale, path));
   const Eigen::Vector3d foot{bounds.center().x(), bounds.center().y(), bounds.min().z()};
   for (Eigen::Vector3f& vertex : mesh.vertices) {
     vertex = (config.scale * (vertex.cast<double>() - foot)).cast<float>();
   }
-  mesh.normals.clear();
-  turn_outside_out(mesh, config.scale * (bounds.center() - foot));
   Scene scene = empty_tabletop(path.filename().string());
   SceneObject object;
   object.name = "object";

@@ -41,6 +41,12 @@ struct MeshSceneConfig {
 /// YAML, or a mesh, which is put on a table (mesh_scene). Answers not_found with the known names.
 [[nodiscard]] Result<Scene> find_scene(const std::string& name_or_path, const MeshSceneConfig& mesh = {});
 
+/// Reads a mesh in the unit of its file, turned so that z points up. A closed surface that is inside out is turned:
+/// what can be seen of an object goes by its outward normals. `normals` is empty.
+/// @param up  the axis of the file that points up; nullopt: stated_up_axis, or z
+/// @return errors of read_any_mesh; corrupt_data for a file without triangles, and for coordinates that are not finite.
+[[nodiscard]] Result<TriangleMesh> read_upright_mesh(const std::filesystem::path& path, std::optional<UpAxis> up);
+
 /// Largest size of an object that stands well within the edges of the table, and below the ceiling of the workspace.
 constexpr double kMostMeshLength_m{0.9};
 constexpr double kMostMeshWidth_m{0.56};
@@ -48,10 +54,15 @@ constexpr double kMostMeshHeight_m{0.37};
 /// Smallest size of an object; a smaller one has only a few voxels.
 constexpr double kLeastMeshSize_m{0.02};
 
+/// Answers invalid_argument for an object that is larger or smaller than these, with the scale that would fit where
+/// there is a likely one.
+/// @param size   of the object, in the unit of its file
+/// @param scale  metres per unit
+[[nodiscard]] Status check_object_size(const Eigen::Vector3d& size, double scale, const std::filesystem::path& file);
+
 /// Puts the mesh on empty_tabletop: the middle of its bounds above the middle of the table, its lowest point on the
-/// top. The object is named after its file. Errors: those of read_any_mesh and MeshSceneConfig; corrupt_data for
-/// coordinates that are not finite; invalid_argument for an object that is too large or too small, with the scale that
-/// would fit where there is a likely one.
+/// top. The object is named after its file. Errors: those of read_upright_mesh, MeshSceneConfig and
+/// check_object_size.
 [[nodiscard]] Result<Scene> mesh_scene(const std::filesystem::path& path, const MeshSceneConfig& config = {});
 
 /// Tells by its extension whether a file is a mesh: PLY, STL, OBJ, GLB, glTF, OFF, DAE.

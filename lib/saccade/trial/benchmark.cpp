@@ -152,6 +152,25 @@ SimulatedRunConfig run_of(const Benchmark& benchmark, std::vector<Pose> candidat
   return run;
 }
 
+/// Puts each object into its scenes, one for each first view.
+Result<BenchmarkPlan> plan_of(const Benchmark& benchmark, std::vector<BenchmarkObject> found, ObjectSource source) {
+  BenchmarkPlan plan;
+  plan.objects = source;
+  SACCADE_TRY(std::vector<Pose> candidates, candidates_of(benchmark));
+  const std::vector<Start> starts = starts_of(benchmark, candidates);
+  for (BenchmarkObject& object : found) {
+    SACCADE_TRY(const Scene scene,
+                scene_of(std::move(object), benchmark, source == ObjectSource::stand_ins || !benchmark.true_size));
+    for (const Start& start : starts) {
+      plan.scenes.push_back(scene);
+      plan.scenes.back().name += start.name;
+      plan.scenes.back().scan = {start.T_world_camera};
+    }
+  }
+  plan.run = run_of(benchmark, std::move(candidates));
+  return plan;
+}
+
 }  // namespace
 
 Result<Benchmark> find_benchmark(std::string_view name) {
@@ -167,31 +186,25 @@ Result<Benchmark> find_benchmark(std::string_view name) {
 }
 
 Result<BenchmarkPlan> plan_benchmark(const Benchmark& benchmark, const std::optional<std::filesystem::path>& objects) {
-  BenchmarkPlan plan;
-  SACCADE_TRY(std::vector<Pose> candidates, candidates_of(benchmark));
   if (benchmark.has_own_scenes()) {
+    BenchmarkPlan plan;
     if (objects) SACCADE_CHECK(read_objects(benchmark, *objects));
     for (const std::string& name : benchmark.scenes) {
       SACCADE_TRY(Scene scene, find_scene(name));
       plan.scenes.push_back(std::move(scene));
     }
-    plan.run = run_of(benchmark, std::move(candidates));
+    plan.run = run_of(benchmark, {});
     return plan;
   }
   SACCADE_TRY(std::vector<BenchmarkObject> found,
               objects ? read_objects(benchmark, *objects) : stand_ins_of(benchmark));
-  plan.stand_ins = !objects;
-  const std::vector<Start> starts = starts_of(benchmark, candidates);
-  for (BenchmarkObject& object : found) {
-    SACCADE_TRY(const Scene scene, scene_of(std::move(object), benchmark, plan.stand_ins || !benchmark.true_size));
-    for (const Start& start : starts) {
-      plan.scenes.push_back(scene);
-      plan.scenes.back().name += start.name;
-      plan.scenes.back().scan = {start.T_world_camera};
-    }
-  }
-  plan.run = run_of(benchmark, std::move(candidates));
-  return plan;
+  return plan_of(benchmark, std::move(found), objects ? ObjectSource::published : ObjectSource::stand_ins);
+}
+
+Result<BenchmarkPlan> plan_benchmark(const Benchmark& benchmark, std::span<const std::filesystem::path> own_meshes,
+                                     const MeshSceneConfig& config) {
+  SACCADE_TRY(std::vector<BenchmarkObject> found, read_own_objects(benchmark, own_meshes, config));
+  return plan_of(benchmark, std::move(found), ObjectSource::own);
 }
 
 Result<std::vector<BenchmarkCurve>> measure_benchmark(const Benchmark& benchmark, const RayScene& scene,

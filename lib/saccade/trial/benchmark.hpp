@@ -77,11 +77,16 @@ struct Benchmark {
 /// Finds a protocol. Answers invalid_argument with the known names, and the nearest of them.
 [[nodiscard]] Result<Benchmark> find_benchmark(std::string_view name);
 
+/// Where the objects of a campaign come from. Published figures are about the first kind alone.
+enum class ObjectSource : std::uint8_t { published, stand_ins, own };
+inline constexpr auto kObjectSourceNames = make_names<ObjectSource>(
+    {{ObjectSource::published, "published"}, {ObjectSource::stand_ins, "stand-ins"}, {ObjectSource::own, "own"}});
+
 /// Scenes and settings of a campaign that runs a protocol.
 struct BenchmarkPlan {
   std::vector<Scene> scenes;  ///< one per object and first view: "figure", or "figure@12" for the first view 12
-  bool stand_ins{false};      ///< the objects are not those that the figures were published for
-  SimulatedRunConfig run;     ///< all but strategy, seed and arm
+  ObjectSource objects{ObjectSource::published};
+  SimulatedRunConfig run;  ///< all but strategy, seed and arm
 };
 
 /// Expands a protocol. Objects are scaled and put where it says.
@@ -90,6 +95,14 @@ struct BenchmarkPlan {
 /// with another checksum, naming both; errors of read_any_mesh and find_scene.
 [[nodiscard]] Result<BenchmarkPlan> plan_benchmark(const Benchmark& benchmark,
                                                    const std::optional<std::filesystem::path>& objects);
+
+/// Expands a protocol, with other meshes than it names. Objects are called after their files.
+/// @param config  `scale` matters where the protocol leaves objects their size
+/// @return invalid_argument for two files of one name, for a protocol with scenes of its own, and for an object whose
+/// size check_object_size refuses where the protocol leaves it; errors of read_upright_mesh.
+[[nodiscard]] Result<BenchmarkPlan> plan_benchmark(const Benchmark& benchmark,
+                                                   std::span<const std::filesystem::path> own_meshes,
+                                                   const MeshSceneConfig& config);
 
 /// Shares after the first view, the first two …, as many as the protocol has views. A run that ended early goes on
 /// with its last ones.

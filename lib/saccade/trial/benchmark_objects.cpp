@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/trial/benchmark_objects.hpp"
 
+#include <algorithm>
 #include <system_error>
 
 #include "saccade/core/names.hpp"
@@ -34,6 +35,11 @@ Result<fs::file_status> status_of(const fs::path& path) {
   const fs::file_status status = fs::status(path, code);
   if (status.type() != fs::file_type::none) return status;
   return Error{Errc::io_failure, "cannot be read: " + code.message(), path.string()};
+}
+
+Error takes_no_meshes(const Benchmark& benchmark, const fs::path& given) {
+  return {Errc::invalid_argument, "the protocol " + benchmark.name + " has scenes of its own, and takes no meshes",
+          given.string()};
 }
 
 }  // namespace
@@ -71,12 +77,35 @@ Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, co
     objects.push_back({path.stem().string(), {std::move(mesh)}});
   }
   if (!objects.empty()) return objects;
-  if (benchmark.meshes.empty()) {
-    return Error{Errc::invalid_argument,
-                 "the protocol " + benchmark.name + " has scenes of its own, and takes no meshes", folder.string()};
-  }
+  if (benchmark.meshes.empty()) return takes_no_meshes(benchmark, folder);
   return Error{Errc::not_found, "none of the meshes of " + benchmark.name + " is there: " + files_of(benchmark),
                folder.string()};
+}
+
+Result<std::vector<BenchmarkObject>> read_own_objects(const Benchmark& benchmark, std::span<const fs::path> files,
+                                                      const MeshSceneConfig& config) {
+  SACCADE_CHECK(config.validate());
+  if (files.empty()) return Error{Errc::invalid_argument, "there is no mesh", "benchmark " + benchmark.name};
+  if (benchmark.has_own_scenes()) return takes_no_meshes(benchmark, files.front());
+  std::vector<BenchmarkObject> objects;
+  for (const fs::path& file : files) {
+    const std::string name = file.stem().string();
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (objects[i].name != name) continue;
+      return Error{Errc::invalid_argument,
+                   "the object of " + files[i].string() + " is called " + name + ", too; rename one of the files",
+                   file.string()};
+    }
+    SACCADE_TRY(TriangleMesh mesh, read_upright_mesh(file, config.up));
+    Eigen::AlignedBox3f bounds;
+    for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex);
+    const Eigen::Vector3d size = bounds.sizes().cast<double>();
+    if (benchmark.true_size) SACCADE_CHECK(check_object_size(size, config.scale, file));
+    if (!(size.maxCoeff() > 0.0)) return Error{Errc::corrupt_data, "the mesh is a single point", file.string()};
+    for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= static_cast<float>(config.scale);
+    objects.push_back({name, {std::move(mesh)}});
+  }
+  return objects;
 }
 
 }  // namespace saccade

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// BenchmarkObject: the objects of a protocol, from the user's meshes or as stand-ins.
+// BenchmarkObject: the objects of a protocol, from its meshes, from other meshes, or as stand-ins.
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "saccade/trial/benchmark.hpp"
 
@@ -8,7 +13,7 @@ namespace saccade {
 
 struct BenchmarkObject {
   std::string name;                  ///< name of the file without its ending, or of the stand-in
-  std::vector<TriangleMesh> bodies;  ///< in the unit of the file, z up
+  std::vector<TriangleMesh> bodies;  ///< z up; in metres where they keep their size
 };
 
 /// Returns the stand-ins of a protocol.
@@ -17,5 +22,10 @@ struct BenchmarkObject {
 /// Reads the meshes of a protocol that are in the folder, in the protocol's order. Errors: plan_benchmark.
 [[nodiscard]] Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark,
                                                                 const std::filesystem::path& folder);
+
+/// Reads meshes that are not the protocol's. Errors: plan_benchmark.
+[[nodiscard]] Result<std::vector<BenchmarkObject>> read_own_objects(const Benchmark& benchmark,
+                                                                    std::span<const std::filesystem::path> files,
+                                                                    const MeshSceneConfig& config);
 
 }  // namespace saccade

@@ -62,7 +62,7 @@ TEST(Benchmark, ViewSphereFloatsItsObjectsAmongFiveThousandViews) {
   const Benchmark benchmark = named_protocol("view-sphere");
   const auto plan = plan_benchmark(benchmark, {});
   ASSERT_TRUE(plan) << plan.error().message;
-  EXPECT_TRUE(plan->stand_ins);
+  EXPECT_EQ(plan->objects, ObjectSource::stand_ins);
   ASSERT_EQ(plan->scenes.size(), 3U);
   EXPECT_EQ(plan->run.exploration.max_views, 9);  // the first view is the tenth
   EXPECT_EQ(plan->run.exploration.oscillation_frames, 1);
@@ -164,12 +164,52 @@ TEST(Benchmark, TakesOnlyTheRightMeshes) {
   std::ofstream{folder / "tip.off"} << off;
   const auto read = plan_benchmark(own, folder.path());
   ASSERT_TRUE(read) << read.error().message;
-  EXPECT_FALSE(read->stand_ins);
+  EXPECT_EQ(read->objects, ObjectSource::published);
   ASSERT_EQ(read->scenes.size(), 1U);
   EXPECT_EQ(read->scenes.front().name, "tip");
   const auto meshes = true_meshes(read->scenes.front());
   const Box bounds = bounds_of(meshes->back().mesh);
   EXPECT_NEAR(bounds.max.z() - bounds.min.z(), 2.0 * (bounds.max.x() - bounds.min.x()), 1e-6);
+}
+
+TEST(Benchmark, TakesAnyMeshes) {
+  const test::TempFolder folder;
+  const auto tetrahedron = [](const char* unit) {
+    return std::string{"OFF\n4 4 0\n0 0 0\n"} + unit + " 0 0\n0 2 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  };
+  std::ofstream{folder / "tip.off"} << tetrahedron("1");
+  std::ofstream{folder / "wide.off"} << tetrahedron("5");
+  std::filesystem::create_directory(folder / "other");
+  std::ofstream{folder / "other/tip.off"} << tetrahedron("1");
+  const auto bounds_in = [](const Scene& scene) { return bounds_of(true_meshes(scene)->back().mesh); };
+  const std::vector<std::filesystem::path> both{folder / "wide.off", folder / "tip.off"};
+
+  // Scaled where the protocol scales, whatever --mesh-scale says.
+  const auto scaled = plan_benchmark(named_protocol("view-sphere"), both, {1000.0, UpAxis::y});
+  ASSERT_TRUE(scaled) << scaled.error().message;
+  EXPECT_EQ(scaled->objects, ObjectSource::own);
+  ASSERT_EQ(scaled->scenes.size(), 2U);
+  EXPECT_EQ(scaled->scenes.front().name, "wide");
+  EXPECT_EQ(scaled->scenes.back().name, "tip");
+  const Box tip = bounds_in(scaled->scenes.back());
+  EXPECT_NEAR(tip.max.z() - tip.min.z(), 2.0 * (tip.max.x() - tip.min.x()), 1e-6);
+
+  // In its own size on the table otherwise.
+  const auto sized = plan_benchmark(named_protocol("household"), both, {0.05, {}});
+  ASSERT_TRUE(sized) << sized.error().message;
+  const Box wide = bounds_in(sized->scenes.front());
+  EXPECT_NEAR(wide.max.x() - wide.min.x(), 0.25, 1e-6);
+  EXPECT_NEAR(wide.max.z() - wide.min.z(), 0.05, 1e-6);
+
+  const auto refused = [&](const char* protocol, std::vector<std::filesystem::path> files, const char* text) {
+    const auto plan = plan_benchmark(named_protocol(protocol), files, MeshSceneConfig{});
+    ASSERT_FALSE(plan) << text;
+    EXPECT_EQ(plan.error().code, Errc::invalid_argument);
+    EXPECT_NE(plan.error().message.find(text), std::string::npos) << plan.error().message;
+  };
+  refused("household", both, "--mesh-scale");
+  refused("one-shot", {folder / "tip.off", folder / "other/tip.off"}, "rename one");
+  refused("tabletop-arm", both, "takes no meshes");
 }
 
 TEST(Benchmark, SaysWhyItsFolderOfMeshesCannotBeUsed) {

@@ -61,6 +61,14 @@ function incomplete(benchmark: Json): HTMLElement | null {
   return h("p", {}, h("strong", {}, `${count(number(runs["done"]))} of ${count(number(runs["planned"]))} runs so far. `), `${over} Nothing is said beside published figures.`);
 }
 
+/** Says why our figures and the published ones are about different objects; null where they are not. */
+function otherObjects(from: string): HTMLElement | null {
+  const end = "are not those of the publications, so the figures cannot be compared with theirs.";
+  if (from === "stand-ins") return h("p", {}, h("strong", {}, "Stand-ins: "), `these objects are made by rule and ${end}`);
+  if (from === "own") return h("p", {}, h("strong", {}, "Other objects: "), `these objects ${end}`);
+  return null;
+}
+
 function tableSection(benchmark: Json): Section {
   const rows = objects(benchmark["table"]);
   const none = text(benchmark["not_published"]);
@@ -68,7 +76,7 @@ function tableSection(benchmark: Json): Section {
     "benchmark",
     `${text(benchmark["name"])}, version ${number(benchmark["version"]) ?? ""}`,
     h("p", {}, `${text(benchmark["text"])}. ${text(benchmark["measure"])}.`),
-    benchmark["stand_ins"] === true ? h("p", {}, h("strong", {}, "Stand-ins: "), "these objects are made by rule and are not those of the publications, so the figures cannot be compared with theirs.") : null,
+    otherObjects(text(benchmark["objects_from"])),
     incomplete(benchmark),
     dataTable("Ours and published", columns(rows), rows),
     none === "" ? null : h("p", { class: "soft" }, `No published figures: ${none}.`),
