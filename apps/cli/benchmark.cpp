@@ -129,6 +129,32 @@ bool says_more(const CLI::App& command) {
   return std::any_of(options.begin(), options.end(), [](const CLI::Option* option) { return option->count() > 0; });
 }
 
+/// The protocols, a line each.
+std::string benchmark_list() {
+  std::size_t width = 0;
+  for (const Benchmark& benchmark : benchmarks()) width = std::max(width, benchmark.name.size() + 2);
+  std::string text;
+  for (const Benchmark& benchmark : benchmarks())
+    text += benchmark.name + std::string(width - benchmark.name.size(), ' ') + benchmark.text + '\n';
+  return text;
+}
+
+nlohmann::json benchmark_list_json() {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Benchmark& benchmark : benchmarks()) {
+    nlohmann::json meshes = nlohmann::json::array();
+    for (const BenchmarkMesh& mesh : benchmark.meshes) {
+      meshes.push_back({{"file", mesh.file}, {"md5", mesh.md5}, {"from", mesh.from}});
+    }
+    all.push_back({{"name", benchmark.name},
+                   {"version", benchmark.version},
+                   {"text", benchmark.text},
+                   {"meshes", std::move(meshes)},
+                   {"stand_ins", benchmark.stand_ins}});
+  }
+  return {{"benchmarks", std::move(all)}};
+}
+
 class BenchmarkCommand final : public Command {
  public:
   BenchmarkCommand() {

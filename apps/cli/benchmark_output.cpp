@@ -375,28 +375,4 @@ Status write_benchmark(const std::filesystem::path& folder, const Benchmark& ben
   return curves.write(folder / "curves.csv");
 }
 
-std::string benchmark_list() {
-  std::size_t width = 0;
-  for (const Benchmark& benchmark : benchmarks()) width = std::max(width, benchmark.name.size() + 2);
-  std::string text;
-  for (const Benchmark& benchmark : benchmarks()) text += padded_to(benchmark.name, width) + benchmark.text + '\n';
-  return text;
-}
-
-json benchmark_list_json() {
-  json all = json::array();
-  for (const Benchmark& benchmark : benchmarks()) {
-    json meshes = json::array();
-    for (const BenchmarkMesh& mesh : benchmark.meshes) {
-      meshes.push_back({{"file", mesh.file}, {"md5", mesh.md5}, {"from", mesh.from}});
-    }
-    all.push_back({{"name", benchmark.name},
-                   {"version", benchmark.version},
-                   {"text", benchmark.text},
-                   {"meshes", std::move(meshes)},
-                   {"stand_ins", benchmark.stand_ins}});
-  }
-  return {{"benchmarks", std::move(all)}};
-}
-
 }  // namespace saccade::cli

@@ -71,8 +71,4 @@ struct BenchmarkTable {
                                      const BenchmarkPlan& plan, const BenchmarkTable& table,
                                      const std::vector<MeasuredRun>& measured);
 
-/// The protocols, a line each.
-[[nodiscard]] std::string benchmark_list();
-[[nodiscard]] nlohmann::json benchmark_list_json();
-
 }  // namespace saccade::cli
