@@ -152,7 +152,8 @@ step attention build/release/saccade --quiet compare --scenes tabletop-1,tableto
 step attention_clutter build/release/saccade --quiet compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle \
   --robot comau --seeds 1 --max-views 5 --out "$out/attention_clutter" --json "$out/attention_clutter.json"
 
-echo "Published protocols: stand-ins, and the meshes that are there, on Slurm where it answers; figures go to docs/guides/benchmark.md"
+echo "Published protocols: stand-ins, and the meshes that are there, on Slurm where it answers; each leaves its table.csv in $out"
+# Nothing goes from there to docs/guides/benchmark.md: its tables are copied from such files by hand, with command and seeds.
 protocol() {  # NAME PROTOCOL OPTIONS…
   local name="$1"
   shift

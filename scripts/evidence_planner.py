@@ -8,6 +8,7 @@ to. "table" in place of a campaign runs none, and writes what there is. Exit sta
 missed, 2: a campaign failed.
 SACCADE_DATA: scanned meshes (../shared/data)."""
 import csv
+import functools
 import math
 import os
 import pathlib
@@ -111,6 +112,16 @@ class Figures:
             return (gaps[0] if gaps else math.nan), math.inf
         return statistics.mean(gaps), student_t(len(gaps) - 1) * statistics.stdev(gaps) / math.sqrt(len(gaps))
 
+    def ratio_half_width(self, a, b, figure):
+        """Half width of the 95 % interval of mean a / mean b, by the delta method on the scenes that both have."""
+        of_a, of_b = self.by_scene(a, figure), self.by_scene(b, figure)
+        pairs = [(of_a[scene], of_b[scene]) for scene in of_a if scene in of_b]
+        if len(pairs) < 2:
+            return math.inf
+        mean_a, mean_b = (statistics.mean(side) for side in zip(*pairs))
+        rests = [(one_a - mean_a / mean_b * one_b) / mean_b for one_a, one_b in pairs]
+        return student_t(len(rests) - 1) * statistics.stdev(rests) / math.sqrt(len(rests))
+
     def promises(self, strategy):
         """(promised, observed) of each view, run by run."""
         runs = {}
@@ -131,11 +142,24 @@ class Figures:
                    and float(run["coverage"]) - float(run["initial_coverage"]) < 1e-3 for run in self.runs)
 
 
+@functools.cache
 def student_t(degrees):
-    """97.5 % quantile, for 95 % intervals."""
-    table = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36, 8: 2.31, 9: 2.26, 10: 2.23, 15: 2.13,
-             17: 2.11, 20: 2.09, 29: 2.05, 49: 2.01, 99: 1.98, 199: 1.97}
-    return table[max(key for key in table if key <= degrees)]
+    """97.5 % quantile, for 95 % intervals: bisection on the closed forms of Abramowitz and Stegun, 26.7.3 and 26.7.4."""
+    def within(t):
+        """Probability of [-t, t]."""
+        angle, odd = math.atan(t / math.sqrt(degrees)), degrees % 2
+        term, total = math.cos(angle) if odd else 1.0, 0.0
+        for k in range(1 + odd, degrees, 2):
+            total += term
+            term *= k / (k + 1) * math.cos(angle) ** 2
+        total *= math.sin(angle)
+        return 2 / math.pi * (angle + total) if odd else total
+
+    low, high = 1.0, 13.0
+    while high - low > 1e-9:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if within(middle) < 0.95 else (low, middle)
+    return 0.5 * (low + high)
 
 
 def ranks(values):
@@ -153,11 +177,15 @@ def ranks(values):
 
 
 def calibration(pairs):
-    """Rank correlation, and the median of what was kept."""
-    kept = [observed / promised for promised, observed in pairs if promised > 0]
-    if len(kept) < 3:
+    """Rank correlation, and the median of what was kept; without views that promised nothing, as calibration_of does it."""
+    pairs = [(promised, observed) for promised, observed in pairs if promised > 0 and math.isfinite(observed)]
+    if len(pairs) < 3:
         return math.nan, math.nan
-    return statistics.correlation(*(ranks(list(side)) for side in zip(*pairs))), statistics.median(kept)
+    kept = statistics.median(observed / promised for promised, observed in pairs)
+    promised, observed = (ranks(list(side)) for side in zip(*pairs))
+    if len(set(promised)) == 1 or len(set(observed)) == 1:
+        return math.nan, kept  # all alike: no order
+    return statistics.correlation(promised, observed), kept
 
 
 def table(figures):
@@ -174,16 +202,22 @@ def table(figures):
 
 
 class Held:
-    """What is held to, and whether it was met."""
+    """What is held to, and whether it was met.
 
-    def __init__(self):
+    @param so_far  of a campaign that is not complete"""
+
+    def __init__(self, so_far=False):
         self.lines = []
         self.missed = 0
+        self.so_far = " so far" if so_far else ""
 
-    def to(self, text, value, limit, at_least, digits=2):
+    def to(self, text, value, limit, at_least, digits=2, half=None):
+        """@param half  half width of an interval, which is told; the value alone is held to the limit"""
         met = value >= limit if at_least else value <= limit
         self.missed += not met
-        self.lines.append(f"- {'met' if met else '**missed**'}: {text}: {value:.{digits}f} "
+        outcome = f"met{self.so_far}" if met else f"**missed{self.so_far}**"
+        interval = "" if half is None else f" ± {half:.{digits}f}"
+        self.lines.append(f"- {outcome}: {text}: {value:.{digits}f}{interval} "
                           f"(at {'least' if at_least else 'most'} {limit:.{digits}f})")
 
 
