@@ -2,11 +2,13 @@
 // saccade benchmark: published protocols of view planning, each a campaign as of `saccade compare`, with published
 // figures beside ours.
 #include <algorithm>
+#include <set>
 
 #include "benchmark_output.hpp"
 #include "compare_run.hpp"
 #include "compare_shards.hpp"
 #include "saccade/core/nearest_word.hpp"
+#include "saccade/trial/benchmark_objects.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -22,10 +24,13 @@ Planners benchmark_planners(const Planners& planners) {
 std::vector<std::string> object_names(const Benchmark& benchmark, bool from_folder,
                                       const std::vector<std::filesystem::path>& own) {
   if (benchmark.has_own_scenes()) return benchmark.scenes;
-  std::vector<std::string> names;
-  for (const std::filesystem::path& mesh : own) names.push_back(mesh.stem().string());
-  if (!names.empty()) return names;
+  if (!own.empty()) {
+    Result<std::vector<std::string>> names = own_object_names(own);
+    if (!names) usage_error("--meshes", names.error().context + ": " + names.error().message);
+    return std::move(*names);
+  }
   if (!from_folder) return benchmark.stand_ins;
+  std::vector<std::string> names;
   for (const BenchmarkMesh& mesh : benchmark.meshes) names.push_back(std::filesystem::path{mesh.file}.stem().string());
   return names;
 }
@@ -58,20 +63,27 @@ void check_wanted(const std::vector<std::string>& wanted, const Benchmark& bench
   }
 }
 
-/// The mesh files that --meshes names, those of its folders included.
+/// The mesh files that --meshes names, those of its folders included, each once. What exists under the whole text is no
+/// list: there may be a comma in its name.
 std::vector<std::filesystem::path> named_meshes(const std::string& text) {
   std::vector<std::filesystem::path> files;
-  for (const std::string& name : list_parts("--meshes", text)) {
-    std::error_code ignored;
+  std::set<std::filesystem::path> seen;
+  std::error_code ignored;
+  const auto add = [&](const std::filesystem::path& file) {
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(file, ignored);
+    if (seen.insert(whole.empty() ? file : whole).second) files.push_back(file);
+  };
+  const bool is_one = std::filesystem::exists(text, ignored);
+  for (const std::string& name : is_one ? std::vector{text} : list_parts("--meshes", text)) {
     if (std::filesystem::is_directory(name, ignored)) {
       const auto found = mesh_files(name);
       if (!found) usage_error("--meshes", found.error().context + ": " + found.error().message);
-      files.insert(files.end(), found->begin(), found->end());
+      std::for_each(found->begin(), found->end(), add);
       continue;
     }
     if (!is_mesh_file(name))
       usage_error("--meshes", name + ": is neither a folder nor a mesh (PLY, STL, OBJ, GLB, glTF, OFF, DAE)");
-    files.emplace_back(name);
+    add(name);
   }
   return files;
 }
@@ -200,6 +212,9 @@ class BenchmarkCommand final : public Command {
     if (!found) usage_error("name", found.error().message);
     if (request_->path.empty()) usage_error("--out", "a folder for the results is needed");
     benchmark_ = *found;
+    for (const char* option : {"--mesh-scale", "--mesh-up"}) {
+      if (meshes_.empty() && command_->count(option) > 0) usage_error(option, "goes with --meshes");
+    }
     if (!only_.empty()) wanted_ = list_parts("--only", only_);
     require_ok(compare_.mesh.validate(), "--mesh-scale");
     if (!meshes_.empty()) own_meshes_ = named_meshes(meshes_);

@@ -58,51 +58,28 @@ std::vector<Run> runs_in(const std::set<SceneAndSeed>& places, const std::vector
   return kept;
 }
 
-/// Mean over objects of a figure of a curve.
-template <class Figure>
-MeanEstimate over_objects(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
-                          const std::string& strategy, const Figure& figure) {
-  std::map<std::string, std::map<std::string, std::vector<double>>> of_object;  // by scene, whose seeds they are
-  for (const MeasuredRun& run : measured) {
-    if (run.key.strategy != strategy) continue;
-    of_object[object_of(benchmark, run.key.scene)][run.key.scene].push_back(figure(run.curve));
-  }
-  std::vector<double> of_objects;
-  for (const auto& [object, of_scene] : of_object) {
-    std::vector<double> of_starts;
-    for (const auto& [scene, values] : of_scene) of_starts.push_back(mean(values));
-    of_objects.push_back(mean(of_starts));
-  }
-  return estimate_mean(of_objects);
-}
-
 BenchmarkRow row_after(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
                        const std::string& strategy, std::size_t views) {
-  const auto over = [&](const auto& figure) { return over_objects(benchmark, measured, strategy, figure); };
+  const auto over = [&](const CurveFigure& figure) {
+    return over_objects(object_figures(benchmark, measured, strategy, figure));
+  };
   BenchmarkRow row;
   row.method = strategy;
   row.views = static_cast<double>(views);
   row.taken = over([views](const BenchmarkCurve& curve) { return static_cast<double>(std::min(views, curve.taken)); });
-  row.of_visible = over([views](const BenchmarkCurve& curve) { return curve.after[views - 1].of_visible; });
-  row.of_all = over([views](const BenchmarkCurve& curve) { return curve.after[views - 1].of_all; });
+  row.of_visible = over(share_after(views, &CoverageShares::of_visible));
+  row.of_all = over(share_after(views, &CoverageShares::of_all));
   return row;
 }
 
 BenchmarkRow row_of_own_scenes(const std::vector<CampaignSummary>& summaries, const std::string& strategy) {
-  const auto over_scenes = [&](const char* figure) {
-    std::vector<double> means;
-    for (const CampaignSummary& summary : summaries) {
-      if (!summary.group.scene || summary.group.strategy != strategy || summary.of(figure).n == 0) continue;
-      means.push_back(summary.of(figure).mean);
-    }
-    return estimate_mean(means);
-  };
+  const auto over = [&](const char* figure) { return over_objects(object_figures(summaries, strategy, figure)); };
   BenchmarkRow row;
   row.method = strategy;
-  row.views = over_scenes("views").mean;
-  row.of_visible = over_scenes("coverage");
-  row.path_m = over_scenes("path_m");
-  row.motion_s = over_scenes("motion_s");
+  row.views = over("views").mean;
+  row.of_visible = over("coverage");
+  row.path_m = over("path_m");
+  row.motion_s = over("motion_s");
   return row;
 }
 
@@ -233,10 +210,6 @@ json row_json(const BenchmarkRow& row) {
 
 }  // namespace
 
-std::string object_of(const Benchmark& benchmark, const std::string& scene) {
-  return benchmark.starts > 1 ? scene.substr(0, scene.rfind('@')) : scene;
-}
-
 std::vector<std::string> objects_of(const Benchmark& benchmark, const std::vector<Scene>& scenes) {
   std::vector<std::string> objects;
   for (const Scene& scene : scenes) {
@@ -250,7 +223,7 @@ BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<Mea
                                const ComparedRuns& compared, std::size_t planned) {
   const std::vector<std::string> strategies = strategies_in(compared);
   const std::set<SceneAndSeed> shared = shared_by(strategies, compared);
-  BenchmarkTable table{{}, planned, compared.runs.size(), shared.size()};
+  BenchmarkTable table{{}, {}, planned, compared.runs.size(), shared.size()};
   if (benchmark.rule && !shared.empty()) {
     const std::vector<MeasuredRun> runs = runs_in(shared, measured);
     for (const std::string& strategy : strategies) {
@@ -258,9 +231,11 @@ BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<Mea
         table.rows.push_back(row_after(benchmark, runs, strategy, views));
       }
     }
+    table.differences = object_differences(benchmark, runs, strategies);
   } else if (!shared.empty()) {
     const std::vector<CampaignSummary> summaries = summarize(runs_in(shared, compared.runs), compared.budget);
     for (const std::string& strategy : strategies) table.rows.push_back(row_of_own_scenes(summaries, strategy));
+    table.differences = object_differences(benchmark, summaries, strategies);
   }
   for (const PublishedFigure& figure : benchmark.published) {
     BenchmarkRow row;
@@ -307,7 +282,7 @@ std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan
   if (!table.is_complete()) text << incomplete_text(table);
   text << what_counts(benchmark) << "\n\n";
   print_rows(text, benchmark, table);
-  text << '\n';
+  text << '\n' << differences_text(table.differences);
   if (!benchmark.not_published.empty()) text << "published: none: " << benchmark.not_published << '\n';
   std::size_t number = 0;
   for (const std::string& source : sources_of(benchmark)) text << '[' << ++number << "] " << source << '\n';
@@ -336,33 +311,51 @@ json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan, const
           {"runs", {{"planned", table.planned}, {"done", table.done}, {"each_strategy", table.each_strategy}}},
           {"complete", table.is_complete()},
           {"table", std::move(rows)},
+          {"differences", differences_json(table.differences)},
           {"beside_published", beside_published(benchmark, table, plan.objects)},
           {"not_published", benchmark.not_published}};
 }
 
 Status write_benchmark(const std::filesystem::path& folder, const Benchmark& benchmark, const BenchmarkPlan& plan,
                        const BenchmarkTable& table, const std::vector<MeasuredRun>& measured) {
-  CsvTable rows{{"benchmark", "version", "objects_from", "complete", "method", "views", "views_taken", "of_visible",
-                 "of_all", "objects", "path_m", "motion_s", "published", "year", "source", "object", "differs"}};
-  const auto mean_of = [](const std::optional<MeanEstimate>& estimate) {
-    return estimate && estimate->n > 0 ? std::optional{estimate->mean} : std::nullopt;
+  const std::vector<std::pair<std::string_view, std::string>> about{
+      {"benchmark", benchmark.name},
+      {"version", std::to_string(benchmark.version)},
+      {"objects_from", std::string{kObjectSourceNames.of(plan.objects)}},
+      {"complete", table.is_complete() ? "yes" : "no"}};
+  std::vector<std::string_view> columns;
+  for (const auto& [column, value] : about) columns.push_back(column);
+  for (const char* column :
+       {"method", "views", "views_taken", "of_visible", "of_visible_low", "of_visible_high", "of_all", "of_all_low",
+        "of_all_high", "objects", "path_m", "motion_s", "published", "year", "source", "object", "differs"}) {
+    columns.emplace_back(column);
+  }
+  CsvTable rows{columns};
+  const auto add_mean = [&rows](const std::optional<MeanEstimate>& estimate) {
+    rows.add(estimate && estimate->n > 0 ? std::optional{estimate->mean} : std::nullopt);
+  };
+  const auto add_interval = [&rows](const std::optional<MeanEstimate>& estimate) {
+    rows.add(estimate ? estimate->low() : std::nullopt).add(estimate ? estimate->high() : std::nullopt);
   };
   for (const BenchmarkRow& row : table.rows) {
     const std::optional<PublishedFigure>& figure = row.published;
-    rows.add(benchmark.name).add(static_cast<std::uint64_t>(benchmark.version));
-    rows.add(std::string{kObjectSourceNames.of(plan.objects)})
-        .add(table.is_complete() ? "yes" : "no")
-        .add(row.method)
-        .add(row.views);
-    rows.add(mean_of(row.taken)).add(mean_of(row.of_visible)).add(mean_of(row.of_all));
+    for (const auto& [column, value] : about) rows.add(value);
+    rows.add(row.method).add(row.views);
+    add_mean(row.taken);
+    for (const auto* share : {&row.of_visible, &row.of_all}) {
+      add_mean(*share);
+      add_interval(*share);
+    }
     rows.add(row.of_visible ? std::optional{static_cast<double>(row.of_visible->n)} : std::nullopt);
-    rows.add(mean_of(row.path_m)).add(mean_of(row.motion_s));
+    add_mean(row.path_m);
+    add_mean(row.motion_s);
     rows.add(figure ? std::optional{figure->coverage} : std::nullopt);
     rows.add(figure && figure->year > 0 ? std::to_string(figure->year) : "").add(figure ? figure->source : "");
     rows.add(figure ? figure->object : "").add(figure ? figure->differs : "");
     rows.end_row();
   }
   SACCADE_CHECK(rows.write(folder / "table.csv"));
+  SACCADE_CHECK(write_differences(folder, about, table.differences));
   if (!benchmark.rule) return {};
   CsvTable curves{{"object", "strategy", "seed", "view", "of_visible", "of_all", "views_taken"}};
   for (const MeasuredRun& run : measured) {

@@ -7,20 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "benchmark_differences.hpp"
 #include "compare_output.hpp"
 #include "saccade/trial/benchmark.hpp"
 
 namespace saccade::cli {
 
-/// A run, and how its coverage grew.
-struct MeasuredRun {
-  CampaignKey key;
-  BenchmarkCurve curve;
-};
-
-/// A line of the table: a strategy of ours at a number of views, or a published figure. Means are over objects, each
-/// with the mean of its first views, each with the mean of its seeds: starts and seeds of an object are not
-/// independent samples of objects.
+/// A line of the table: a strategy of ours at a number of views, or a published figure. Means are over objects
+/// (ObjectFigures).
 struct BenchmarkRow {
   std::string method;
   double views{0.0};                  ///< the first one included
@@ -34,15 +28,14 @@ struct BenchmarkRow {
 
 struct BenchmarkTable {
   std::vector<BenchmarkRow> rows;
-  std::size_t planned{0};        ///< runs of the benchmark
-  std::size_t done{0};           ///< runs that are done
-  std::size_t each_strategy{0};  ///< runs of each strategy that the rows are over
+  std::vector<BenchmarkDifference> differences;  ///< over the runs that the rows are over
+  std::size_t planned{0};                        ///< runs of the benchmark
+  std::size_t done{0};                           ///< runs that are done
+  std::size_t each_strategy{0};                  ///< runs of each strategy that the rows are over
 
   [[nodiscard]] bool is_complete() const { return done == planned; }
 };
 
-/// Returns the object of a scene of the protocol: "figure" of "figure@12".
-[[nodiscard]] std::string object_of(const Benchmark& benchmark, const std::string& scene);
 /// Returns the objects of the scenes, each once, in their order.
 [[nodiscard]] std::vector<std::string> objects_of(const Benchmark& benchmark, const std::vector<Scene>& scenes);
 
@@ -62,11 +55,11 @@ struct BenchmarkTable {
 [[nodiscard]] std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan,
                                          const BenchmarkTable& table);
 
-/// {name, version, objects, objects_from, scenes, runs: {…}, table: […], beside_published: […], …}
+/// {name, version, objects, objects_from, scenes, runs: {…}, table: […], differences: […], beside_published: […], …}
 [[nodiscard]] nlohmann::json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan,
                                             const BenchmarkTable& table);
 
-/// Writes table.csv, and curves.csv for protocols with a rule. io_failure.
+/// Writes table.csv and differences.csv, and curves.csv for protocols with a rule. io_failure.
 [[nodiscard]] Status write_benchmark(const std::filesystem::path& folder, const Benchmark& benchmark,
                                      const BenchmarkPlan& plan, const BenchmarkTable& table,
                                      const std::vector<MeasuredRun>& measured);

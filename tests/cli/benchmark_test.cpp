@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include "compare_runs.hpp"
@@ -12,6 +13,40 @@
 
 namespace saccade::test {
 namespace {
+
+/// Both shares of a run after one of its views, by curves.csv.
+struct Shares {
+  double of_visible{0.0};
+  double of_all{0.0};
+};
+Shares shares_in(const fs::path& curves, const std::string& run_and_view) {
+  std::ifstream file{curves};
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with(run_and_view + ",")) continue;
+    const std::size_t all = line.find(',', run_and_view.size() + 1) + 1;
+    return {std::stod(line.substr(run_and_view.size() + 1)), std::stod(line.substr(all))};
+  }
+  ADD_FAILURE() << curves << " has no " << run_and_view;
+  return {};
+}
+
+std::vector<std::string> csv_lines(const fs::path& path) {
+  std::ifstream file{path};
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+/// Expects mean and interval of the differences of two objects. For one degree of freedom t is tan(0.95 π/2), 12.7062.
+void expect_difference_of_two(const nlohmann::json& told, double a, double b) {
+  const double mean = 0.5 * (a + b);
+  const double half = 12.7062047361747 * 0.5 * std::abs(a - b);
+  EXPECT_EQ(told.at("n"), 2);
+  EXPECT_NEAR(told.at("mean"), mean, 1e-9);
+  EXPECT_NEAR(told.at("low"), mean - half, 1e-9);
+  EXPECT_NEAR(told.at("high"), mean + half, 1e-9);
+  EXPECT_EQ(told.at("excludes_0"), std::abs(mean) > half);
+}
 
 TEST(BenchmarkCommand, ListsItsProtocols) {
   const Outcome listed = run_program({"benchmark"});
@@ -94,6 +129,8 @@ TEST(BenchmarkCommand, TakesAnyMeshesAndSaysThatTheyAreNotThePublishedOnes) {
   };
   refused({"--meshes", "own", "--objects", "own"}, {"--meshes", "--objects"});
   refused({"--meshes", "no.txt"}, {"--meshes", "no.txt", "PLY, STL"});
+  refused({"--mesh-scale", "0.1"}, {"--mesh-scale", "goes with --meshes"});
+  refused({"--mesh-up", "y"}, {"--mesh-up", "goes with --meshes"});
   refused({"--meshes", folder.path().string()}, {"--meshes", "holds no mesh"});
   refused({"--meshes", (folder / "own").string(), "--only", "hare"}, {"--only", "box, crate"});
 }
@@ -127,7 +164,9 @@ TEST(BenchmarkEvidence, CountsObjectsNotFirstViews) {
     EXPECT_GT(row.at("views_taken").at("mean"), 1.0);
     EXPECT_LE(row.at("views_taken").at("mean"), row.at("views"));
   }
-  EXPECT_EQ(ours, 2U);  // after 10 views, and after 12
+  EXPECT_EQ(ours, 2U);                                              // after 10 views, and after 12
+  EXPECT_EQ(benchmark.at("differences"), nlohmann::json::array());  // there is one strategy
+  EXPECT_EQ(csv_lines(folder / "out/differences.csv").size(), 1U);
   // Shortfalls come before figures that are reached.
   const auto lines = benchmark.at("beside_published").get<Arguments>();
   EXPECT_EQ(lines.size(), 3U);
@@ -154,13 +193,56 @@ TEST(BenchmarkCommand, InterruptedItsTableIsOverTheSameObjectsForAllStrategies) 
   ASSERT_EQ(benchmark.at("table").size(), 2U);
   for (const nlohmann::json& row : benchmark.at("table")) EXPECT_EQ(row.at("of_all").at("n"), 1);
   // The row of random is that of the jug alone, though its run of the hare is done.
-  std::ifstream curves{out / "curves.csv"};
-  double of_jug = 0.0;
-  for (std::string line; std::getline(curves, line);) {
-    if (line.starts_with("jug,random,1,6,")) of_jug = std::stod(line.substr(15));
+  const Shares jug = shares_in(out / "curves.csv", "jug,random,1,6");
+  EXPECT_NEAR(benchmark.at("table")[0].at("of_visible").at("mean"), jug.of_visible, 1e-9);
+  EXPECT_GT(jug.of_visible, 0.1);
+  // So is the difference, and one object has no interval.
+  const Shares jug_of_contours = shares_in(out / "curves.csv", "jug,random-contours,1,6");
+  ASSERT_EQ(benchmark.at("differences").size(), 1U);
+  const nlohmann::json one = benchmark.at("differences")[0];
+  EXPECT_EQ(one.at("objects"), 1);
+  EXPECT_NEAR(one.at("of_all").at("mean"), jug.of_all - jug_of_contours.of_all, 1e-9);
+  for (const char* none : {"low", "high", "excludes_0"}) EXPECT_TRUE(one.at("of_all").at(none).is_null()) << none;
+  EXPECT_NE(interrupted.out.find("(1 object); one object has no interval"), std::string::npos) << interrupted.out;
+}
+
+TEST(BenchmarkEvidence, DifferencesAreOverObjects) {
+  if (kSanitized) GTEST_SKIP() << "its images have the size of the protocol's";
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  const Arguments wanted{"benchmark", "household", "--only", "hare,jug", "--strategies", "random,random-contours",
+                         "--out",     out.string()};
+  const Outcome done = run_program(wanted + Arguments{"--quiet", "--json", (folder / "result.json").string()});
+  ASSERT_EQ(done.status, 0) << done.err;
+  const nlohmann::json whole = read_json(folder / "result.json")->at("result").at("benchmark");
+  ASSERT_EQ(whole.at("differences").size(), 1U);
+  const nlohmann::json two = whole.at("differences")[0];
+  EXPECT_EQ(two.at("method"), "random");
+  EXPECT_EQ(two.at("beside"), "random-contours");
+  EXPECT_EQ(two.at("views"), 6);
+  EXPECT_EQ(two.at("objects"), 2);
+  const Shares jug = shares_in(out / "curves.csv", "jug,random,1,6");
+  const Shares jug_of_contours = shares_in(out / "curves.csv", "jug,random-contours,1,6");
+  const Shares hare = shares_in(out / "curves.csv", "hare,random,1,6");
+  const Shares hare_of_contours = shares_in(out / "curves.csv", "hare,random-contours,1,6");
+  EXPECT_NE(hare.of_all, hare_of_contours.of_all);
+  expect_difference_of_two(two.at("of_visible"), jug.of_visible - jug_of_contours.of_visible,
+                           hare.of_visible - hare_of_contours.of_visible);
+  expect_difference_of_two(two.at("of_all"), jug.of_all - jug_of_contours.of_all,
+                           hare.of_all - hare_of_contours.of_all);
+  for (const char* share : {"of_visible", "of_all"}) {  // it is that of the table's means
+    const double apart = whole.at("table")[0].at(share).at("mean").get<double>() -
+                         whole.at("table")[1].at(share).at("mean").get<double>();
+    EXPECT_NEAR(two.at(share).at("mean"), apart, 1e-9) << share;
   }
-  EXPECT_NEAR(benchmark.at("table")[0].at("of_visible").at("mean"), of_jug, 1e-9);
-  EXPECT_GT(of_jug, 0.1);
+  EXPECT_NE(done.out.find("random beside random-contours, by object: "), std::string::npos) << done.out;
+  EXPECT_EQ(done.out.find("not corrected"), std::string::npos) << done.out;  // there is one comparison
+  const std::vector<std::string> lines = csv_lines(out / "differences.csv");
+  ASSERT_EQ(lines.size(), 2U);
+  const std::string about{"household,2,stand-ins,yes,random,random-contours,6,2,"};
+  ASSERT_TRUE(lines[1].starts_with(about)) << lines[1];
+  EXPECT_NEAR(std::stod(lines[1].substr(about.size())), two.at("of_visible").at("mean").get<double>(), 1e-12);
+  EXPECT_EQ(std::count(lines[1].begin(), lines[1].end(), ','), std::count(lines[0].begin(), lines[0].end(), ','));
 }
 
 TEST(BenchmarkCommand, InterruptedOrKilledItKeepsWhatWasDoneAndGoesOn) {
@@ -212,6 +294,17 @@ TEST(BenchmarkCommand, InterruptedOrKilledItKeepsWhatWasDoneAndGoesOn) {
   };
   EXPECT_EQ(lines_in("curves.csv"), 1 + 2 * 6);
   EXPECT_EQ(lines_in("table.csv"), 1 + 2);
+  EXPECT_EQ(lines_in("differences.csv"), 1 + 1);
+  const std::string table = text_of(out / "table.csv");
+  EXPECT_NE(table.find(",of_visible,of_visible_low,of_visible_high,of_all,of_all_low,of_all_high,objects,"),
+            std::string::npos)
+      << table;
+  const Shares random = shares_in(out / "curves.csv", "hare,random,1,6");
+  const Shares contours = shares_in(out / "curves.csv", "hare,random-contours,1,6");
+  ASSERT_EQ(benchmark.at("differences").size(), 1U);
+  const nlohmann::json difference = benchmark.at("differences")[0];
+  EXPECT_NEAR(difference.at("of_visible").at("mean"), random.of_visible - contours.of_visible, 1e-9);
+  EXPECT_NEAR(difference.at("of_all").at("mean"), random.of_all - contours.of_all, 1e-9);
   const std::vector<CampaignEntry> runs = runs_in(out);
   ASSERT_EQ(runs.size(), 2U);
   for (const CampaignEntry& run : runs) EXPECT_GT(run.run.views.size(), 2U) << run.key.strategy;

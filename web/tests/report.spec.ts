@@ -31,7 +31,7 @@ const kinds: [name: string, address: () => string, heading: string, parts: strin
   ["update", () => { const { record, pictures, details } = update(); return writeReport(folder, record, pictures, details); }, "Update of jug", ["Summary", "Task", "Looking again", "Run"]],
   ["cell", () => { const { record, pictures } = cell(); return writeReport(folder, record, pictures); }, "Updates of my cell", ["The map now", "Tasks", "Run"]],
   ["compare", () => { const { record, details } = comparison(); return writeReport(folder, record, [], details); }, "Strategies compared", ["All scenes", "clutter:5", "clutter:6", "Slices", "Comparison"]],
-  ["benchmark", () => { const { record, details } = benchmark(); return writeReport(folder, record, [], details); }, "Benchmark one-shot", ["one-shot, version 1", "All scenes", "clutter:5", "clutter:6", "Comparison"]],
+  ["benchmark", () => { const { record, details } = benchmark(); return writeReport(folder, record, [], details); }, "Benchmark one-shot", ["one-shot, version 1", "Differences by object", "All scenes", "clutter:5", "clutter:6", "Comparison"]],
   ["reproduce", () => { const { record, pictures } = tables(); return writeReport(folder, record, pictures); }, "Tables of the thesis", ["Table 4.4", "Run"]],
   ["segment", () => { const { record, pictures } = segments(); return writeReport(folder, record, pictures); }, "Segments of table.pcd", ["Summary", "Run"]],
   ["filter", () => { const { record, pictures } = filtered(); return writeReport(folder, record, pictures); }, "Filtered frames of filtered", ["Summary", "Run"]],
@@ -83,6 +83,30 @@ test("a benchmark has ours and published figures in one table", async ({ page })
   await expect(page.locator("#benchmark")).toContainText("Stand-ins: these objects are made by rule");
   await expect(page.locator("#benchmark")).not.toContainText("runs so far");
   expect(wrong).toEqual([]);
+});
+
+test("a benchmark has differences by object, and says that their intervals are not corrected", async ({ page }) => {
+  const { record, details } = benchmark();
+  const wrong = await open(page, writeReport(folder, record, [], details));
+  const rows = page.locator("#differences tbody tr");
+  await expect(rows).toHaveCount(2);
+  await expect(rows.nth(0).locator("th, td")).toHaveText(["surface − random", "12", "2", "+7.1 ± 4.2", "yes", "+6.8 ± 9.0", "no"]);
+  await expect(rows.nth(1).locator("th, td")).toHaveText(["surface − unobserved-voxel", "12", "2", "−0.2 ± 1.1", "no", "±0.0 ± 0.0", "no"]);
+  await expect(page.locator("#differences")).toContainText("not corrected for the number of comparisons");
+  expect(wrong).toEqual([]);
+});
+
+test("a benchmark with one object has no interval, and one with one strategy no differences", async ({ page }) => {
+  const arm = armBenchmark();
+  await open(page, writeReport(folder, arm.record, [], arm.details));
+  await expect(page.locator("#differences h2")).toHaveText("Differences by scene");
+  await expect(page.locator("#differences tbody tr").locator("th, td")).toHaveText(["surface − random", "5", "1", "+3.0", "–"]);
+  await expect(page.locator("#differences")).toContainText("One scene has no interval");
+  await expect(page.locator("#differences")).not.toContainText("not corrected");
+  const { record, details } = benchmark();
+  (record.result["benchmark"] as { differences: unknown[] }).differences = [];
+  await open(page, writeReport(folder, record, [], details));
+  await expect(page.locator("#differences")).toHaveCount(0);
 });
 
 test("a benchmark says beside every published figure, first of those that it is short of", async ({ page }) => {

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/scene/internal/tabletop.hpp"
+#include "saccade/scene/mesh_parts.hpp"
 
 namespace saccade {
 namespace {
@@ -47,23 +49,21 @@ Eigen::AlignedBox3d bounds_of_vertices(const TriangleMesh& mesh) {
   return bounds;
 }
 
-/// Turns a closed surface that is inside out.
-void turn_outside_out(TriangleMesh& mesh, const Eigen::Vector3d& middle) {
-  constexpr double kClosed{1e-3};  // the area vectors of a closed surface cancel out
-  Eigen::Vector3d area = Eigen::Vector3d::Zero();
-  double whole_area{0.0};
-  double volume{0.0};
-  for (const auto& triangle : mesh.triangles) {
-    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
-      return mesh.vertices[triangle[i]].cast<double>() - middle;
-    };
-    const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    area += normal;
-    whole_area += normal.norm();
-    volume += corner(0).dot(normal);
-  }
-  if (!(volume < 0.0) || area.norm() > kClosed * whole_area) return;
-  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+/// Answers invalid_argument where the mesh is small beside the steps of float at its place. One that shrank to a point
+/// counts only far away: near the origin it is a point.
+Status check_steps(const Eigen::AlignedBox3d& bounds, const fs::path& path) {
+  constexpr double kMostStep{1e-3};  // share of the largest extent
+  constexpr double kFar{1e3};
+  const double extent = bounds.sizes().maxCoeff();
+  const auto farthest =
+      static_cast<float>(std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff()));
+  const double step = static_cast<double>(std::nextafter(farthest, std::numeric_limits<float>::max()) - farthest);
+  if (step <= kMostStep * extent || (extent == 0.0 && farthest < kFar)) return {};
+  std::ostringstream text;
+  text.precision(2);
+  text << "the mesh lies so far from the origin (" << farthest << ") that its coordinates are rounded to " << step
+       << " units of its " << extent << "; move it to the origin";
+  return Error{Errc::invalid_argument, text.str(), path.string()};
 }
 
 /// Returns a hint with the likely unit of the file; empty where none would fit.
@@ -102,7 +102,8 @@ Result<TriangleMesh> read_upright_mesh(const fs::path& path, std::optional<UpAxi
   }
   if (!finite) return Error{Errc::corrupt_data, "a coordinate of the mesh is not finite", path.string()};
   mesh.normals.clear();
-  turn_outside_out(mesh, bounds_of_vertices(mesh).center());
+  SACCADE_CHECK(check_steps(bounds_of_vertices(mesh), path));
+  turn_outside_out(mesh);
   return mesh;
 }
 

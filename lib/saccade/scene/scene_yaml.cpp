@@ -279,6 +279,10 @@ Result<Scene> find_scene(const std::string& name_or_path, const MeshSceneConfig&
   if (fs::exists(name_or_path)) {
     return is_mesh_file(name_or_path) ? mesh_scene(name_or_path, mesh) : read_scene(name_or_path);
   }
+  const fs::path path{name_or_path};
+  if (path.has_parent_path() || is_mesh_file(path) || path.extension() == ".yaml" || path.extension() == ".yml") {
+    return Error{Errc::not_found, "there is no such file", name_or_path};
+  }
   std::vector<std::string_view> names{kSurfelScenes.begin(), kSurfelScenes.end()};
   for (const BuiltinScene& builtin : builtin_scenes()) names.push_back(builtin.name);
   return Error{Errc::not_found,

@@ -41,10 +41,11 @@ struct MeshSceneConfig {
 /// YAML, or a mesh, which is put on a table (mesh_scene). Answers not_found with the known names.
 [[nodiscard]] Result<Scene> find_scene(const std::string& name_or_path, const MeshSceneConfig& mesh = {});
 
-/// Reads a mesh in the unit of its file, turned so that z points up. A closed surface that is inside out is turned:
-/// what can be seen of an object goes by its outward normals. `normals` is empty.
+/// Reads a mesh in the unit of its file, turned so that z points up. A closed part that is inside out is turned
+/// (turn_outside_out): what can be seen of an object goes by its outward normals. `normals` is empty.
 /// @param up  the axis of the file that points up; nullopt: stated_up_axis, or z
-/// @return errors of read_any_mesh; corrupt_data for a file without triangles, and for coordinates that are not finite.
+/// @return errors of read_any_mesh; corrupt_data for a file without triangles, and for coordinates that are not finite;
+/// invalid_argument for a mesh so far from the origin that float rounds it to steps of over a thousandth of its size.
 [[nodiscard]] Result<TriangleMesh> read_upright_mesh(const std::filesystem::path& path, std::optional<UpAxis> up);
 
 /// Largest size of an object that stands well within the edges of the table, and below the ceiling of the workspace.

@@ -40,6 +40,19 @@ bool apart(const Box& box, const Vector3d& a, const Vector3d& b, const Vector3d&
 
 }  // namespace
 
+double surface_area_m2(const std::vector<ObjectMesh>& meshes, const std::optional<Box>& within) {
+  double area_m2{0.0};
+  for (const ObjectMesh& object : meshes) {
+    for (const auto& [ia, ib, ic] : object.mesh.triangles) {
+      const Vector3d a = object.mesh.vertices[ia].cast<double>();
+      const Vector3d b = object.mesh.vertices[ib].cast<double>();
+      const Vector3d c = object.mesh.vertices[ic].cast<double>();
+      if (!within || !apart(*within, a, b, c)) area_m2 += 0.5 * (b - a).cross(c - a).norm();
+    }
+  }
+  return area_m2;
+}
+
 SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spacing_m,
                                const std::optional<Box>& within) {
   SACCADE_EXPECTS(spacing_m > 0.0);
@@ -77,7 +90,8 @@ SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spa
 }
 
 std::vector<std::uint8_t> observable(const RayScene& scene, const SurfaceSamples& samples,
-                                     const ObservabilityConfig& config, const Executor& executor) {
+                                     const ObservabilityConfig& config, const Executor& executor,
+                                     const Progress& progress) {
   SACCADE_EXPECTS(config.positions >= 1 && config.clearance_m >= 0.0);
   const std::vector<Vector3d> positions = free_positions(scene.scene().workspace, config);
   const double least_cosine = std::cos(config.max_incidence_rad);
@@ -91,6 +105,7 @@ std::vector<std::uint8_t> observable(const RayScene& scene, const SurfaceSamples
   };
   std::vector<std::uint8_t> result(samples.points.size(), 0);
   executor.parallel_for(result.size(), 256, [&](std::size_t begin, std::size_t end) {
+    if (progress.cancelled()) return;
     for (std::size_t i = begin; i < end; ++i) {
       for (const Vector3d& position : positions) {
         if (!seen_from(i, position)) continue;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "saccade/core/progress.hpp"
 #include "saccade/scene/ray_scene.hpp"
 
 namespace saccade {
@@ -15,6 +16,9 @@ struct SurfaceSamples {
   std::vector<Eigen::Vector3f> normals;  ///< outward
   std::vector<std::uint32_t> objects;    ///< index into Scene::objects
 };
+
+/// Returns the area of the triangles whose bounds meet the box, or of all.
+[[nodiscard]] double surface_area_m2(const std::vector<ObjectMesh>& meshes, const std::optional<Box>& within = {});
 
 /// Samples about one point per spacing_m², spread evenly over the area of each mesh, in the order of its triangles;
 /// only points in the box, where one is given. Expects a positive spacing. Equal on every machine.
@@ -30,7 +34,9 @@ struct ObservabilityConfig {
 /// Tells for each sample whether a camera at one or more of the positions, in any orientation, would see it:
 /// unobstructed, from outside, not too flat. The half sphere stands on the horizontal plane through the workspace's
 /// floor, so surfaces that face the support or are enclosed are not observable. O(samples · positions · log triangles).
+/// Once progress is cancelled the rest counts as not seen.
 [[nodiscard]] std::vector<std::uint8_t> observable(const RayScene& scene, const SurfaceSamples& samples,
-                                                   const ObservabilityConfig& config, const Executor& executor);
+                                                   const ObservabilityConfig& config, const Executor& executor,
+                                                   const Progress& progress = {});
 
 }  // namespace saccade

@@ -98,8 +98,9 @@ struct BenchmarkPlan {
 
 /// Expands a protocol, with other meshes than it names. Objects are called after their files.
 /// @param config  `scale` matters where the protocol leaves objects their size
-/// @return invalid_argument for two files of one name, for a protocol with scenes of its own, and for an object whose
-/// size check_object_size refuses where the protocol leaves it; errors of read_upright_mesh.
+/// @return invalid_argument for files whose names their folders do not tell apart, for a protocol with scenes of its
+/// own, and for an object whose size check_object_size refuses where the protocol leaves it; errors of
+/// read_upright_mesh.
 [[nodiscard]] Result<BenchmarkPlan> plan_benchmark(const Benchmark& benchmark,
                                                    std::span<const std::filesystem::path> own_meshes,
                                                    const MeshSceneConfig& config);

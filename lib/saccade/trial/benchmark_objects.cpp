@@ -2,11 +2,16 @@
 #include "saccade/trial/benchmark_objects.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
 #include <system_error>
 
 #include "saccade/core/names.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
+#include "saccade/scene/mesh_parts.hpp"
 #include "saccade/trial/internal/md5.hpp"
 #include "saccade/trial/internal/stand_ins.hpp"
 
@@ -40,6 +45,43 @@ Result<fs::file_status> status_of(const fs::path& path) {
 Error takes_no_meshes(const Benchmark& benchmark, const fs::path& given) {
   return {Errc::invalid_argument, "the protocol " + benchmark.name + " has scenes of its own, and takes no meshes",
           given.string()};
+}
+
+/// Returns the names of a file's folders, the nearest first.
+std::vector<std::string> folders_of(const fs::path& file) {
+  std::error_code ignored;
+  const fs::path whole = fs::absolute(file, ignored).lexically_normal();
+  std::vector<std::string> folders;
+  for (const fs::path& part : whole.relative_path().parent_path()) folders.insert(folders.begin(), part.string());
+  return folders;
+}
+
+/// Returns names of the files that tell them apart from one another, and from those that are taken: with the nearest
+/// folder above them that does, or else with all folders up to one. None where the files lie in one folder.
+std::optional<std::vector<std::string>> names_by_folder(const std::vector<fs::path>& files,
+                                                        const std::set<std::string>& taken) {
+  std::vector<std::vector<std::string>> folders;
+  for (const fs::path& file : files) folders.push_back(folders_of(file));
+  const auto most = std::max_element(folders.begin(), folders.end(),
+                                     [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  std::vector<std::string> up_to(files.size());
+  for (std::size_t level = 0; most != folders.end() && level < most->size(); ++level) {
+    std::vector<std::string> single;
+    std::vector<std::string> whole;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const std::string stem = files[i].stem().string();
+      const std::string folder = level < folders[i].size() ? folders[i][level] + "-" : "";
+      up_to[i] = folder + up_to[i];
+      single.push_back(folder + stem);
+      whole.push_back(up_to[i] + stem);
+    }
+    for (std::vector<std::string>& names : {std::ref(single), std::ref(whole)}) {
+      std::set<std::string> all = taken;
+      all.insert(names.begin(), names.end());
+      if (all.size() == taken.size() + names.size()) return std::move(names);
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -82,20 +124,39 @@ Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, co
                folder.string()};
 }
 
+Result<std::vector<std::string>> own_object_names(std::span<const fs::path> files) {
+  std::map<std::string, std::vector<std::size_t>> by_stem;
+  for (std::size_t i = 0; i < files.size(); ++i) by_stem[files[i].stem().string()].push_back(i);
+  std::vector<std::string> names(files.size());
+  std::set<std::string> taken;
+  for (const auto& [stem, members] : by_stem) {
+    taken.insert(stem);
+    for (const std::size_t i : members) names[i] = stem;
+  }
+  for (const auto& [stem, members] : by_stem) {
+    if (members.size() == 1) continue;
+    std::vector<fs::path> clashing;
+    for (const std::size_t i : members) clashing.push_back(files[i]);
+    const auto apart = names_by_folder(clashing, taken);
+    if (!apart) {
+      return Error{Errc::invalid_argument,
+                   "the object of " + clashing[0].string() + " is called " + stem + ", too; rename one of the files",
+                   clashing[1].string()};
+    }
+    for (std::size_t k = 0; k < members.size(); ++k) names[members[k]] = (*apart)[k];
+    taken.insert(apart->begin(), apart->end());
+  }
+  return names;
+}
+
 Result<std::vector<BenchmarkObject>> read_own_objects(const Benchmark& benchmark, std::span<const fs::path> files,
                                                       const MeshSceneConfig& config) {
   SACCADE_CHECK(config.validate());
   if (files.empty()) return Error{Errc::invalid_argument, "there is no mesh", "benchmark " + benchmark.name};
   if (benchmark.has_own_scenes()) return takes_no_meshes(benchmark, files.front());
+  SACCADE_TRY(const std::vector<std::string> names, own_object_names(files));
   std::vector<BenchmarkObject> objects;
   for (const fs::path& file : files) {
-    const std::string name = file.stem().string();
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (objects[i].name != name) continue;
-      return Error{Errc::invalid_argument,
-                   "the object of " + files[i].string() + " is called " + name + ", too; rename one of the files",
-                   file.string()};
-    }
     SACCADE_TRY(TriangleMesh mesh, read_upright_mesh(file, config.up));
     Eigen::AlignedBox3f bounds;
     for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex);
@@ -103,7 +164,7 @@ Result<std::vector<BenchmarkObject>> read_own_objects(const Benchmark& benchmark
     if (benchmark.true_size) SACCADE_CHECK(check_object_size(size, config.scale, file));
     if (!(size.maxCoeff() > 0.0)) return Error{Errc::corrupt_data, "the mesh is a single point", file.string()};
     for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= static_cast<float>(config.scale);
-    objects.push_back({name, {std::move(mesh)}});
+    objects.push_back({names[objects.size()], bodies_of(std::move(mesh))});
   }
   return objects;
 }

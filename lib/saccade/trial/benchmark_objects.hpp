@@ -12,7 +12,7 @@
 namespace saccade {
 
 struct BenchmarkObject {
-  std::string name;                  ///< name of the file without its ending, or of the stand-in
+  std::string name;                  ///< name of the file without its ending (own_object_names), or of the stand-in
   std::vector<TriangleMesh> bodies;  ///< z up; in metres where they keep their size
 };
 
@@ -23,7 +23,12 @@ struct BenchmarkObject {
 [[nodiscard]] Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark,
                                                                 const std::filesystem::path& folder);
 
-/// Reads meshes that are not the protocol's. Errors: plan_benchmark.
+/// Names objects after their files, without folder and ending. Where names clash, the nearest folders that tell these
+/// files apart come before: "mug-nontextured", "bowl-nontextured". Answers invalid_argument where none do.
+[[nodiscard]] Result<std::vector<std::string>> own_object_names(std::span<const std::filesystem::path> files);
+
+/// Reads meshes that are not the protocol's, called by own_object_names. Each closed part is a body of its own
+/// (bodies_of). Errors: plan_benchmark.
 [[nodiscard]] Result<std::vector<BenchmarkObject>> read_own_objects(const Benchmark& benchmark,
                                                                     std::span<const std::filesystem::path> files,
                                                                     const MeshSceneConfig& config);

@@ -228,6 +228,13 @@ Status check_known(const Campaign& campaign, const Campaign& shard, const Campai
   SACCADE_TRY(const std::optional<CampaignEntry> ours, campaign.find(key));
   SACCADE_TRY(const std::optional<CampaignEntry> theirs, shard.find(key));
   if (ours && theirs && same_figures(ours->run, theirs->run)) return {};
+  if (ours && theirs && ours->program_version != theirs->program_version) {
+    return Error{Errc::unsupported,
+                 "holds the run " + name_of(key) + " as Saccade " + theirs->program_version +
+                     " made it, and the campaign as " + ours->program_version +
+                     " did, with other figures; use one version for a campaign, and do the runs of the other again",
+                 {}};
+  }
   return Error{Errc::invalid_argument,
                "holds the run " + name_of(key) +
                    " with other figures than the campaign, which cannot be; one of the two programs or files is broken",

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "saccade/explore/planners.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/trial/benchmark_objects.hpp"
 #include "saccade/trial/internal/md5.hpp"
 #include "saccade/trial/internal/stand_ins.hpp"
 #include "support/temp_folder.hpp"
@@ -194,6 +196,13 @@ TEST(Benchmark, TakesAnyMeshes) {
   const Box tip = bounds_in(scaled->scenes.back());
   EXPECT_NEAR(tip.max.z() - tip.min.z(), 2.0 * (tip.max.x() - tip.min.x()), 1e-6);
 
+  // Files of one name are called after their folders, too.
+  const std::vector<std::filesystem::path> tips{folder / "tip.off", folder / "other/tip.off"};
+  const auto apart = plan_benchmark(named_protocol("view-sphere"), tips, MeshSceneConfig{});
+  ASSERT_TRUE(apart) << apart.error().message;
+  EXPECT_EQ(apart->scenes.back().name, "other-tip");
+  EXPECT_EQ(apart->scenes.front().name, folder.path().filename().string() + "-tip");
+
   // In its own size on the table otherwise.
   const auto sized = plan_benchmark(named_protocol("household"), both, {0.05, {}});
   ASSERT_TRUE(sized) << sized.error().message;
@@ -208,8 +217,70 @@ TEST(Benchmark, TakesAnyMeshes) {
     EXPECT_NE(plan.error().message.find(text), std::string::npos) << plan.error().message;
   };
   refused("household", both, "--mesh-scale");
-  refused("one-shot", {folder / "tip.off", folder / "other/tip.off"}, "rename one");
+  refused("one-shot", {folder / "tip.off", folder / "tip.ply"}, "rename one");
   refused("tabletop-arm", both, "takes no meshes");
+}
+
+TEST(Benchmark, NamesOwnObjectsByTheFoldersThatTellThemApart) {
+  using Names = std::vector<std::string>;
+  const auto names = [](const std::vector<std::filesystem::path>& files) {
+    const auto found = own_object_names(files);
+    return found ? *found : Names{found.error().message};
+  };
+  EXPECT_EQ(names({"a/mug.stl", "b/bowl.ply"}), (Names{"mug", "bowl"}));
+  EXPECT_EQ(names({"mug/n.stl", "x.stl", "bowl/n.stl"}), (Names{"mug-n", "x", "bowl-n"}));
+  EXPECT_EQ(names({"mug/16k/n.stl", "bowl/16k/n.stl"}), (Names{"mug-n", "bowl-n"}));
+  EXPECT_EQ(names({"a/x/n.stl", "a/y/n.stl", "b/x/n.stl"}), (Names{"a-x-n", "a-y-n", "b-x-n"}));
+  EXPECT_EQ(names({"x/a/n.stl", "x/b/n.stl", "y/a-n.stl"}), (Names{"x-a-n", "x-b-n", "a-n"}));
+  EXPECT_EQ(names({"a/n.stl", "a/n.ply"}), (Names{"the object of a/n.stl is called n, too; rename one of the files"}));
+  EXPECT_EQ(names({"a/n.stl", "a/n.stl"}), (Names{"the object of a/n.stl is called n, too; rename one of the files"}));
+}
+
+TEST(Benchmark, CountsTheOuterSurfaceOfEachBodyOfAMesh) {
+  const test::TempFolder folder;
+  struct Cube {
+    double edge_m;
+    Eigen::Vector3f at;
+    bool inside_out;
+  };
+  const auto share_of = [&](const std::vector<Cube>& cubes) {
+    TriangleMesh all;
+    for (const Cube& cube : cubes) {
+      const auto offset = static_cast<std::uint32_t>(all.vertices.size());
+      const TriangleMesh box = *tessellate(BoxShape{Vector3d::Constant(cube.edge_m)});
+      for (const Eigen::Vector3f& p : box.vertices) all.vertices.emplace_back(p + cube.at);
+      for (const auto& [a, b, c] : box.triangles) {
+        all.triangles.push_back({a + offset, (cube.inside_out ? c : b) + offset, (cube.inside_out ? b : c) + offset});
+      }
+    }
+    EXPECT_TRUE(write_mesh(folder / "cubes.ply", all));
+    Benchmark benchmark = named_protocol("household");
+    benchmark.on_table = false;
+    benchmark.camera = {160, 120, 130.0, 130.0, 79.5, 59.5, 0.05, 2.0};
+    benchmark.rule = CoverageRule{CoverageRule::Kind::distance, 0.012, 0.006};
+    const std::vector<std::filesystem::path> files{folder / "cubes.ply"};
+    const auto plan = plan_benchmark(benchmark, files, MeshSceneConfig{});
+    EXPECT_TRUE(plan) << plan.error().message;
+    std::vector<Pose> views;
+    for (const double x : {-0.35, 0.0, 0.35}) {
+      for (const double y : {-0.3, 0.3}) {
+        for (const double z : {-0.3, 0.3}) views.push_back(look_at({x, y, z}, Vector3d::Zero()));
+      }
+    }
+    const auto rays = RayScene::build(plan->scenes.front());
+    const auto curves = measure_benchmark(benchmark, *rays, plan->run, std::vector<std::vector<Pose>>{views},
+                                          Executor::with_threads(1));
+    EXPECT_TRUE(curves) << curves.error().message;
+    return curves->front().after.back().of_all;
+  };
+  const Eigen::Vector3f here = Eigen::Vector3f::Zero();
+  const double whole = share_of({{0.1, here, false}});
+  EXPECT_GT(whole, 0.98);
+  EXPECT_GT(share_of({{0.1, here, false}, {0.1, {0.3F, 0.0F, 0.0F}, true}}), 0.98);
+  EXPECT_GT(share_of({{0.1, here, false}, {0.1, {0.04F, 0.03F, 0.02F}, true}}), 0.95);  // overlapping
+  for (const bool inside_out : {false, true}) {
+    EXPECT_EQ(share_of({{0.1, here, false}, {0.06, {0.0F, 0.0F, 0.02F}, inside_out}}), whole);  // nested
+  }
 }
 
 TEST(Benchmark, SaysWhyItsFolderOfMeshesCannotBeUsed) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of a benchmark: our strategies and published figures in one table, then the runs as those of a comparison.
+// The report of a benchmark: our strategies and published figures in one table, how our strategies differ on the same
+// objects, then the runs as those of a comparison.
 import { h } from "../ui/dom";
 import { compareReport } from "./compare";
 import { type Json, list, number, object, objects, type ReportDocument, text } from "./document";
 import { type Report, section, type Section } from "./parts";
 import type { Pictures } from "./pictures";
 import { type Column, dataTable } from "./table";
-import { count, plural } from "./words";
+import { count, decimal, plural, signed } from "./words";
 
 const percent = (share: number | undefined) => (share === undefined ? "" : (100 * share).toFixed(1));
 
@@ -83,9 +84,45 @@ function tableSection(benchmark: Json): Section {
   );
 }
 
+/** "+7.1 ± 4.2", in points; without an interval where there is one object. */
+function pointsText(value: unknown): string {
+  const { mean, low } = object(value);
+  const [middle, least] = [number(mean), number(low)];
+  if (middle === undefined) return "";
+  return signed(100 * middle, 1) + (least === undefined ? "" : ` ± ${decimal(100 * (middle - least), 1)}`);
+}
+
+/** Whether the interval excludes 0; "–" without one. */
+const excludesText = (value: unknown): string => ({ true: "yes", false: "no" })[String(object(value)["excludes_0"])] ?? "–";
+
+/** The first strategy beside each other one, object by object. null where there is one strategy, and in records of older programs. */
+function differencesSection(benchmark: Json): Section | null {
+  const rows = objects(benchmark["differences"]);
+  if (rows.length === 0) return null;
+  const two = rows.some((row) => row["of_all"] !== undefined);
+  const each = two ? "object" : "scene";
+  const share = (name: string, key: string): Column<Json>[] => [
+    { name: `${name}, points`, text: (row) => pointsText(row[key]), value: (row) => number(object(row[key])["mean"]) },
+    { name: two ? `differs from 0, ${name}` : "differs from 0", text: (row) => excludesText(row[key]) },
+  ];
+  const columns: Column<Json>[] = [
+    { name: "difference", text: (row) => `${text(row["method"])} \u2212 ${text(row["beside"])}`, wrap: true },
+    { name: "views", text: (row) => count(number(row["views"])), value: (row) => number(row["views"]) },
+    { name: `${each}s`, text: (row) => count(number(row["objects"])), value: (row) => number(row["objects"]) },
+    ...share(two ? "of visible" : "coverage", "of_visible"),
+    ...(two ? share("of all", "of_all") : []),
+  ];
+  const intervals = rows.filter((row) => number(object(row["of_visible"])["low"]) !== undefined).length;
+  const lines = [`Shares of the first strategy minus those of another one, on the same ${each}s; the intervals are over ${each}s.`];
+  if (intervals < rows.length) lines.push(`One ${each} has no interval.`);
+  if (intervals > 1) lines.push("The intervals are not corrected for the number of comparisons.");
+  return section("differences", `Differences by ${each}`, h("p", { class: "soft" }, lines.join(" ")), dataTable(`Differences by ${each}`, columns, rows));
+}
+
 export function benchmarkReport(document: ReportDocument, pictures: Pictures): Report {
   const benchmark = object(document.record.result["benchmark"]);
   const runs = compareReport(document, pictures);
   const lines = list(benchmark["beside_published"]).map(String);
-  return { ...runs, title: `Benchmark ${text(benchmark["name"])}`, summary: lines.length > 0 ? lines.map((line) => `${line}.`).join("\n") : runs.summary, sections: [tableSection(benchmark), ...runs.sections] };
+  const differences = differencesSection(benchmark);
+  return { ...runs, title: `Benchmark ${text(benchmark["name"])}`, summary: lines.length > 0 ? lines.map((line) => `${line}.`).join("\n") : runs.summary, sections: [tableSection(benchmark), ...(differences ? [differences] : []), ...runs.sections] };
 }

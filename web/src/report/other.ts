@@ -22,7 +22,10 @@ function segmentsTable(result: Json): HTMLElement | null {
     { name: "size, m", text: (row) => numbers(row["sizes_m"]).map((size) => decimal(size, 3)).join(" × ") },
     { name: "why", text: (row) => text(row["why"]), left: true },
   ];
-  return dataTable("Segments, the most salient first", columns, [...segments].sort((a, b) => (of("saliency")(b) ?? 0) - (of("saliency")(a) ?? 0)));
+  const kScrap_m = 0.03; // no longer segments come last, as in the table of the command
+  const isScrap = (row: Json) => Math.max(0, ...numbers(row["sizes_m"])) <= kScrap_m;
+  const order = (a: Json, b: Json) => Number(isScrap(a)) - Number(isScrap(b)) || (of("saliency")(b) ?? 0) - (of("saliency")(a) ?? 0);
+  return dataTable("Segments, the most salient first; specks last", columns, [...segments].sort(order));
 }
 
 const kScores: readonly (readonly [key: string, name: string])[] = [
