@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The part of bench_gpu_check about the expected surface, and about steps of an exploration that stay on the GPU.
+// Parts of bench_gpu_check. Each prints members of a JSON object, each with a comma behind it, and returns whether
+// every result equals the CPU's.
 
-#include <functional>
-
-#include "saccade/cuda/gpu_map.hpp"
+#include "gpu_report.hpp"
 
 namespace saccade::bench {
 
-struct GpuStepsOptions {
-  bool quick{false};
-  bool emulated{false};
-  std::function<Result<GpuMap>(const TsdfConfig& config)> open;  ///< makes a map on the device under test
-};
-
-/// Prints members of a JSON object, each with a comma behind it. @return whether every result equals the CPU's.
-[[nodiscard]] Result<bool> check_gpu_steps(const GpuStepsOptions& options);
+/// Fusion, surface ray cast and alignment of single images.
+[[nodiscard]] bool check_gpu_frames(const GpuCheck& check);
+/// Choices of the surface strategy, one after the other.
+[[nodiscard]] Result<bool> check_gpu_choices(const GpuCheck& check);
+/// Expected surface, steps that stay on the GPU, and pages.
+[[nodiscard]] Result<bool> check_gpu_steps(const GpuCheck& check);
 
 }  // namespace saccade::bench

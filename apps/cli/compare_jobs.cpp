@@ -72,7 +72,7 @@ class Jobs {
     for (std::thread& other : others) other.join();
     progress_.finish();
     if (thrown_) std::rethrow_exception(thrown_);
-    if (error_) return *error_;
+    if (error_) return failed_with(*error_);
     return done_;
   }
 
@@ -89,8 +89,9 @@ class Jobs {
       const Chain& chain = chains_[*next];
       try {
         for (const PlannedRun& run : chain) {
-          if (const Status status = do_run(run, executor); !status) fail(*next, run, status.error());
-          if (cancel_.cancelled()) break;
+          const Status status = do_run(run, executor);
+          if (!status) fail(*next, run, status.error());
+          if (!status || cancel_.cancelled()) break;
         }
       } catch (...) {
         const std::lock_guard lock{mutex_};
@@ -108,9 +109,13 @@ class Jobs {
     return next_++;
   }
 
+  /// Goes on with the other chains where the run's scene is at fault, which they may not share.
   void fail(std::size_t chain, const PlannedRun& run, Error error) {
+    constexpr std::size_t kAllFail{10};  // without one that succeeds
     const std::lock_guard lock{mutex_};
-    cancel_.request_cancel();
+    --at_work_;
+    ++failures_;
+    if (error.code == Errc::io_failure || (done_ == 0 && failures_ >= kAllFail)) cancel_.request_cancel();
     if (error_ && failed_ <= chain) return;
     const std::string& scene = comparison_.scenes()[run.scene].name;
     error.context = error.context.empty() || error.context == scene ? scene : scene + ", " + error.context;
@@ -132,12 +137,21 @@ class Jobs {
     SACCADE_TRY(entry.run, run_simulated(truth, comparison_.config_of(run), executor, cancel_));
     entry.seconds = 1e-3 * stopwatch.elapsed_ms();
     const std::lock_guard lock{mutex_};
+    if (entry.run.stopped_because != StopReason::cancelled) {
+      SACCADE_CHECK(campaign_.add(entry));
+      index_.add(entry.key, entry.run.views.size());
+      ++done_;
+    }
     --at_work_;
-    if (entry.run.stopped_because == StopReason::cancelled) return {};
-    SACCADE_CHECK(campaign_.add(entry));
-    index_.add(entry.key, entry.run.views.size());
-    ++done_;
     return {};
+  }
+
+  /// The first error, and how many more there were.
+  [[nodiscard]] Error failed_with(Error error) const {
+    if (failures_ > 1) error.message += "; " + std::to_string(failures_ - 1) + " more failed";
+    if (done_ > 0)
+      error.message += "; " + std::to_string(done_) + (done_ == 1 ? " run was" : " runs were") + " done and kept";
+    return error;
   }
 
   /// Reports that a run begins. The caller holds mutex_.
@@ -188,7 +202,8 @@ class Jobs {
   std::size_t at_work_{0};
   std::size_t done_{0};
   std::optional<Error> error_;
-  std::size_t failed_{0};  ///< chain of the error
+  std::size_t failed_{0};    ///< chain of the error
+  std::size_t failures_{0};  ///< chains that ended with an error
   std::exception_ptr thrown_;
 };
 

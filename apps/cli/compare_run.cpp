@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <map>
 #include <sstream>
 
 #include "compare_jobs.hpp"
@@ -35,7 +36,9 @@ int column_width(const Items& items, const Name& name) {
 
 /// Writes nothing, and makes no folder.
 Result<Outcome> list_runs(const Comparison& comparison) {
-  SACCADE_TRY(const CampaignIndex done, done_in(comparison.options().out, {}));
+  const std::filesystem::path& out = comparison.options().out;
+  std::vector<Error> unreadable;  // --status names them
+  SACCADE_TRY(const CampaignIndex done, done_in(out, shard_files(out), &unreadable));
   const std::vector<PlannedRun> runs = comparison.plan(done);
   json rows = json::array();
   std::ostringstream text;
@@ -63,8 +66,30 @@ struct CampaignState {
   std::string left_out{};  ///< for people: runs of shards that a merge left out
 };
 
+/// Refuses to do again what slices have done.
+Status check_merged(const Comparison& comparison) {
+  const std::filesystem::path& out = comparison.options().out;
+  const std::vector<std::filesystem::path> shards = shard_files(out);
+  if (shards.empty()) return {};
+  const auto done_of = [&comparison](const CampaignIndex& found) {
+    const std::vector<PlannedRun> plan = comparison.plan(found);
+    return std::count_if(plan.begin(), plan.end(), [](const PlannedRun& run) { return run.found; });
+  };
+  std::vector<Error> unreadable;
+  SACCADE_TRY(const CampaignIndex merged, done_in(out, {}));
+  SACCADE_TRY(const CampaignIndex all, done_in(out, shards, &unreadable));
+  const auto waiting = done_of(all) - done_of(merged);
+  if (waiting == 0) return {};
+  return Error{Errc::invalid_argument,
+               "slices have done " + std::to_string(waiting) +
+                   (waiting == 1 ? " run that is not merged" : " runs that are not merged") +
+                   " and would be done again; give the same command with --merge first, then this one for the rest",
+               out.string()};
+}
+
 /// Runs what is missing, on this machine.
 Result<CampaignState> run_here(Context& context, const Comparison& comparison) {
+  SACCADE_CHECK(check_merged(comparison));
   SACCADE_CHECK(context.open_folder());
   SACCADE_TRY(Campaign campaign, Campaign::open(*context.folder() / kCampaignFile));
   for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
@@ -120,6 +145,28 @@ std::string now_text(const CampaignState& state, std::size_t done) {
          (state.left_out.empty() ? "" : "          " + state.left_out + '\n');
 }
 
+/// How many runs each version of the program made; empty where this one made all.
+json versions_json(const std::vector<CampaignEntry>& runs) {
+  std::map<std::string, std::size_t> versions;
+  for (const CampaignEntry& run : runs) ++versions[run.program_version];
+  versions.erase(SACCADE_VERSION);
+  if (versions.empty()) return {};
+  json all = versions;
+  const auto own = std::count_if(runs.begin(), runs.end(),
+                                 [](const CampaignEntry& run) { return run.program_version == SACCADE_VERSION; });
+  if (own > 0) all[SACCADE_VERSION] = own;
+  return all;
+}
+
+/// "12 runs by 0.1.0, 8 by 0.2.0: versions may differ in their figures".
+std::string versions_text(const json& versions) {
+  std::string text;
+  for (const auto& [version, runs] : versions.items()) {
+    text += (text.empty() ? "versions  " : ", ") + runs.dump() + (runs == 1 ? " run by " : " runs by ") + version;
+  }
+  return text.empty() ? text : text + ": versions may differ in their figures\n";
+}
+
 Result<Outcome> report(Context& context, const Comparison& comparison, const CampaignState& state,
                        const ReportPart& part) {
   const RunFolder& out = *context.folder();
@@ -132,7 +179,10 @@ Result<Outcome> report(Context& context, const Comparison& comparison, const Cam
   context.lap("tables");
   Outcome outcome{.result = result_json(comparison, state, results)};
   SACCADE_TRY(outcome.text, part(state.campaign, results, outcome.result));
-  outcome.text += now_text(state, results.runs.size()) + "report    " + (out / kReportFile).string() + '\n';
+  const json versions = versions_json(results.runs);
+  if (!versions.empty()) outcome.result["versions"] = versions;
+  outcome.text += now_text(state, results.runs.size()) + versions_text(versions) + "report    " +
+                  (out / kReportFile).string() + '\n';
   if (std::filesystem::exists(out / kShardsFolder)) {
     SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, comparison.plan(state.found)));
     outcome.result["slices"] = slices_json(slices);

@@ -231,7 +231,10 @@ Result<Outcome> run_slice(Context& context, const Comparison& comparison) {
   ShardRecord record = next_try(folder, slice);
   SACCADE_CHECK(write_json(folder / kShardRecord, to_json(record)));
   for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
-  const Result<std::size_t> now = run_recorded(context, comparison, folder.path(), record);
+  const Result<std::size_t> now = [&] {
+    const RecordRenewal renewal{folder.path()};
+    return run_recorded(context, comparison, folder.path(), record);
+  }();
   record.ended = utc_now();
   record.state = !now ? ShardState::failed : interrupted() ? ShardState::interrupted : ShardState::done;
   if (!now) record.error = now.error().to_string();

@@ -3,10 +3,12 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <set>
 #include <utility>
 
@@ -68,6 +70,15 @@ void add_file(std::vector<fs::path>& files, const fs::path& folder) {
 bool is_locked(const fs::path& folder) {
   const Descriptor opened{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   return opened.get() >= 0 && ::flock(opened.get(), LOCK_SH | LOCK_NB) != 0;
+}
+
+constexpr std::chrono::minutes kRenewal{1};
+constexpr std::chrono::minutes kLost{15};  // clocks of machines differ, and network file systems answer late
+
+bool is_old(const fs::path& file) {
+  std::error_code code;
+  const fs::file_time_type renewed = fs::last_write_time(file, code);
+  return !code && fs::file_time_type::clock::now() - renewed > kLost;
 }
 
 }  // namespace
@@ -143,10 +154,22 @@ ShardRecord read_shard_record(const fs::path& folder, const Slice& slice) {
                        .error = record.error().to_string() + "; the next try of the slice writes it anew"};
   }
   record->slice = slice;
-  if (record->state == ShardState::running && record->machine == machine_name() && !is_locked(folder)) {
+  if (record->state != ShardState::running) return *record;
+  if (record->machine != machine_name()) {
+    if (is_old(file)) record->state = ShardState::lost;
+  } else if (!is_locked(folder)) {
     record->state = ShardState::killed;
   }
   return *record;
+}
+
+RecordRenewal::RecordRenewal(const fs::path& folder) {
+  thread_ = std::jthread{[this, file = folder / kShardRecord](const std::stop_token& stop) {
+    std::unique_lock lock{mutex_};
+    while (!ended_.wait_for(lock, stop, kRenewal, [&stop] { return stop.stop_requested(); })) {
+      ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // the time of the file system's machine, not of this one
+    }
+  }};
 }
 
 std::vector<ShardRecord> shard_records(const fs::path& out) {

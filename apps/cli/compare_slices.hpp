@@ -2,10 +2,13 @@
 #pragma once
 // Slices of a campaign, the shards that hold them, and how far each is.
 
+#include <condition_variable>
 #include <filesystem>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "comparison.hpp"
@@ -44,13 +47,14 @@ class SliceCounter {
 [[nodiscard]] std::filesystem::path shard_folder(const std::filesystem::path& out, const Slice& slice);
 
 /// How a slice came to its end, or that it goes on.
-enum class ShardState : std::uint8_t { waiting, running, done, failed, interrupted, killed, unknown };
+enum class ShardState : std::uint8_t { waiting, running, done, failed, interrupted, killed, lost, unknown };
 inline constexpr auto kShardStateNames = make_names<ShardState>({{ShardState::waiting, "waiting"},
                                                                  {ShardState::running, "running"},
                                                                  {ShardState::done, "done"},
                                                                  {ShardState::failed, "failed"},
                                                                  {ShardState::interrupted, "interrupted"},
                                                                  {ShardState::killed, "killed"},
+                                                                 {ShardState::lost, "lost"},
                                                                  {ShardState::unknown, "unknown"}});
 
 /// Report of the task of a slice, in shard.json beside its campaign file.
@@ -67,8 +71,21 @@ struct ShardRecord {
 [[nodiscard]] std::string machine_name();
 [[nodiscard]] nlohmann::json to_json(const ShardRecord& record);
 [[nodiscard]] Result<ShardRecord> shard_record_from_json(const nlohmann::json& json);
+/// Renews the time of a record's file every minute, from a thread of its own, so that other machines see that the slice
+/// goes on.
+class RecordRenewal {
+ public:
+  explicit RecordRenewal(const std::filesystem::path& folder);
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any ended_;
+  std::jthread thread_;  ///< last: it uses the others
+};
+
 /// Reads the record of a shard's folder: waiting where there is none; killed where it says that it runs on this
-/// machine, and none does; unknown where the record cannot be read, which the next try writes anew.
+/// machine, and none does; lost where it says that it runs on another, and was not renewed for a quarter of an hour;
+/// unknown where the record cannot be read, which the next try writes anew.
 [[nodiscard]] ShardRecord read_shard_record(const std::filesystem::path& folder, const Slice& slice);
 /// Returns the records of the slices that have a folder in DIR/shards.
 [[nodiscard]] std::vector<ShardRecord> shard_records(const std::filesystem::path& out);

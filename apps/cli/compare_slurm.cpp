@@ -131,9 +131,11 @@ std::string command_of(const SliceJob& job, std::size_t threads) {
   return text + " --threads " + std::to_string(threads) + " --out " + shell_quoted(job.out.string());
 }
 
-/// From its first line on the script writes to its log, so that a folder that the node cannot reach leaves a trace.
+/// The script ends at once, and its job fails, where its node has no DIR; one that it made would be its own.
+/// From then on it writes to its log, so that a working folder that the node cannot reach leaves a trace.
 std::string begin_in(const SliceJob& job, const std::string& log) {
-  return "set -e\nmkdir -p " + shell_quoted((job.out / kLogsFolder).string()) + "\nexec >>" + log + " 2>&1\ncd " +
+  return "set -e\ntest -d " + shell_quoted(job.out.string()) + "\nmkdir -p " +
+         shell_quoted((job.out / kLogsFolder).string()) + "\nexec >>" + log + " 2>&1\ncd " +
          shell_quoted(job.work_folder.string()) + '\n';
 }
 

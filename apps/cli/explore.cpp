@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade explore: a camera looks, fuses and decides where to look next, until a scene is known.
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 #include <memory>
 #include <optional>
@@ -11,6 +13,7 @@
 #include "explore_run.hpp"
 #include "explore_show.hpp"
 #include "explore_surfels.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/core/angle.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
@@ -134,15 +137,27 @@ std::string summary_of(const ExploreOptions& options, const ExploreRun& explored
   return text.str();
 }
 
+/// The robot, where the viewer finds it whatever folder it is started in: a file by its whole path.
+std::string robot_of(const ExploreOptions& options) {
+  if (!options.robot_command.empty()) return "external";
+  const auto begins = [&](const BuiltinRobot& builtin) { return builtin.name.starts_with(options.robot); };
+  const bool is_known = options.robot == "free" || std::ranges::any_of(builtin_robots(), begins);
+  std::error_code code;
+  if (is_known || !std::filesystem::exists(options.robot, code)) return options.robot;
+  const std::filesystem::path path = std::filesystem::absolute(options.robot, code);
+  return code ? options.robot : path.lexically_normal().string();
+}
+
 json result_json(const ExploreOptions& options, const ExploreSetup& subject, const ExploreDevices& devices,
                  const ExploreRun& explored, const Measures& final, std::size_t unknown_surfels) {
   const RunRecord& run = explored.record();
   const bool ended = run.stopped_because == StopReason::regions_done && !run.regions.empty();
   return {{"scene", subject.scene.name},
           {"out", options.out.string()},
-          {"robot", options.robot_command.empty() ? options.robot : "external"},
+          {"robot", robot_of(options)},
           {"arm_reading", server::arm_reading_to_json(options.arm_reading.urdf)},
           {"strategy", options.run.strategy.name},
+          {"compute", explored.compute_to_json()},
           {"gain_unit", options.run.strategy.gain_unit},
           {"min_gain", options.run.planner.min_gain},
           {"noise", options.run.noise && options.camera_command.empty()},
@@ -276,8 +291,11 @@ class Explore final : public Command {
     if (const Status written = write_results(context, outcome.result, unknown); !written)
       return kept(written.error(), out);
     if (run.stopped_because == StopReason::cancelled) {
-      outcome.cut_short = "stopped after " + std::to_string(run.views.size()) + " views; what they gave is in " +
-                          context.out().string() + (has_journal(out.path()) ? "; to go on, add --resume" : "");
+      outcome.cut_short =
+          "stopped after " + std::to_string(run.views.size()) + " views; what they gave is in " +
+          context.out().string() +
+          (has_journal(out.path()) ? "; to go on, add --resume"
+                                   : "; nothing was seen yet to go on from, so begin again with --force");
       return outcome;
     }
     SACCADE_CHECK(remove_journal(out.path()));

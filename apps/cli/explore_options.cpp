@@ -61,6 +61,8 @@ void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
   for (const Box& box : options.free_boxes()) require_near(box, "--free");
 }
 
+bool ExploreOptions::expects_surface() const { return surfels || run.strategy.name == surface_planner().name; }
+
 std::vector<Box> ExploreOptions::free_boxes() const {
   std::vector<Box> boxes = cell.free;
   for (const std::string& text : free) boxes.push_back(parse_box("--free", text));
@@ -147,6 +149,11 @@ void check_explore_options(const CLI::App& command, ExploreOptions& options, con
       options.surfels ? surfel_planner(options.surfels) : global.planners.find(rehearses ? "sphere" : options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
   choose_strategy(options, *strategy);
+  if (options.backend == ViewBackend::cuda && !options.expects_surface() && !rehearses) {
+    usage_error("--backend", "a GPU computes the expected surface, which " + strategy->name +
+                                 " does not use; give --strategy " + surface_planner().name +
+                                 " or --map surfels, or leave --backend out");
+  }
   if (strategy->needs_truth && !options.camera_command.empty()) {
     usage_error("--strategy", strategy->name + " knows the true scene, which there is not with --camera-command");
   }

@@ -57,6 +57,8 @@ struct ExploreOptions : RunOptions {
   bool with_truth{false};  ///< the scene's objects are what a program's camera sees
   /// Whether the scene is what the camera sees.
   [[nodiscard]] bool knows_truth() const { return camera_command.empty() || with_truth; }
+  /// Whether views are chosen by the expected surface, parts of which a GPU can compute.
+  [[nodiscard]] bool expects_surface() const;
   /// A real robot or arm, which is not where a simulated one would be.
   [[nodiscard]] bool moves_real() const { return !robot_command.empty() || !joints_command.empty(); }
   /// Boxes that are known to be free from the beginning.

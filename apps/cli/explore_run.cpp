@@ -9,6 +9,7 @@
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/core/angle.hpp"
+#include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/io/runs/run_json.hpp"
@@ -158,6 +159,8 @@ Status ExploreRun::run(const std::function<void()>& recorded, std::unique_ptr<me
   SACCADE_TRY(messages_, run_messages(options_.messages, devices_.intrinsics(), progress_));
   if (look_on) messages_->add(std::move(look_on));
   const Status ended = run_to_end();
+  note_gpu_problem();  // also that of the choice after the last view
+  gpu_.reset();
   messages_->finish();
   if (ended.ok()) return ended;
   if (ended.error().code != Errc::cancelled) {
@@ -175,13 +178,16 @@ Status ExploreRun::run_to_end() {
   const CancelOnInterrupt guard{cancel};
   const Approve approve = [this](const RankedView& view) { return ask(view); };
   Recorders recorders{messages_.get(), this};  // the first sees what a view was chosen from
-  SACCADE_TRY(const std::unique_ptr<SurfaceDevice> device, surface_device_on(options_.backend, map_.config()));
+  if (options_.expects_surface()) {
+    SACCADE_TRY(gpu_, surface_device_on(options_.backend, map_.config()));
+    had_gpu_ = gpu_ != nullptr;
+  }
   ExplorerParts parts{map_, devices_.camera(), devices_.robot(), executor_, &recorders, nullptr, approve, &cancel};
-  parts.device = device.get();
+  parts.device = gpu_.get();
   parts.model = options_.surfels.get();
   Explorer explorer{std::move(parts), options_.run.exploration};
   if (!journal_.scanned) {
-    progress_.update("initial scan", 0, 0);
+    progress_.update(options_.map.empty() ? "initial scan" : "measuring the map", 0, 0);
     if (journal_.run.scan.attempted == 0) {
       for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
     }
@@ -201,6 +207,20 @@ Status ExploreRun::run_to_end() {
       make_planner(options_.run, devices_.intrinsics(), regions, subject_.truth ? &*subject_.truth : nullptr);
   SACCADE_TRY(journal_.run, explorer.explore(planner, journal_.run));
   return {};
+}
+
+void ExploreRun::note_gpu_problem() {
+  std::optional<Error> problem = gpu_ ? gpu_->take_problem() : std::nullopt;
+  if (!problem) return;
+  if (!gpu_problem_) progress_.warn("the GPU failed: " + problem->message + "; the CPU goes on");
+  gpu_problem_ = std::move(problem);
+}
+
+json ExploreRun::compute_to_json() const {
+  const char* const used = !had_gpu_ ? "cpu" : gpu_problem_ ? "mixed" : "cuda";
+  return {{"wanted", kViewBackendNames.of(options_.backend)},
+          {"used", used},
+          {"problem", gpu_problem_ ? json(gpu_problem_->message) : json(nullptr)}};
 }
 
 Approval ExploreRun::ask(const RankedView& view) {
@@ -244,10 +264,12 @@ Status ExploreRun::scanned(ScanRecord& scan, const TsdfSnapshot& map) {
 }
 
 Status ExploreRun::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) {
+  note_gpu_problem();
   if (truth_meter_) SACCADE_CHECK(truth_meter_->viewed(view, map, frames));
   if (!truth_meter_) view.measures = measure_now();
   const std::size_t number = journal_.run.views.size() + 1;
-  progress_.say(view_line(number, view, options_.run.strategy.gain_unit));
+  progress_.say(options_.dry_run ? rehearsal_line(view, options_.run.strategy.gain_unit)
+                                 : view_line(number, view, options_.run.strategy.gain_unit));
   progress_.update("exploring", number, static_cast<std::size_t>(options_.run.exploration.max_views));
   if (options_.write_pictures) SACCADE_CHECK(draw(view, frames));
   if (options_.keeps_views()) {

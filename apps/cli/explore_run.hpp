@@ -30,6 +30,9 @@ class ExploreRun final : private Recorder {
   [[nodiscard]] const TsdfSnapshot& map() const { return map_.content(); }
   [[nodiscard]] bool scanned() const { return journal_.scanned; }
   [[nodiscard]] const RunRecord& record() const { return journal_.run; }
+  /// Returns {wanted, used, problem} of run.json: who was to compute the expected surface, who did (cpu, cuda, or
+  /// mixed), and the last error of the GPU, else null.
+  [[nodiscard]] nlohmann::json compute_to_json() const;
   /// Measures of the map as it is now.
   [[nodiscard]] Measures measure_now() const;
 
@@ -37,6 +40,8 @@ class ExploreRun final : private Recorder {
   ExploreRun(const ExploreOptions& options, const ExploreSetup& subject, ExploreDevices& devices, const RunFolder& out,
              const Executor& executor, ProgressBar& progress, TsdfMap map);
   [[nodiscard]] Status run_to_end();
+  /// Says the first error of the GPU, after which the CPU went on, and keeps the last.
+  void note_gpu_problem();
   [[nodiscard]] Approval ask(const RankedView& view);
   [[nodiscard]] Status scanning(const ScanRecord& scan, const TsdfSnapshot& map) override;
   [[nodiscard]] Status scanned(ScanRecord& scan, const TsdfSnapshot& map) override;
@@ -59,6 +64,9 @@ class ExploreRun final : private Recorder {
   std::optional<TruthMeter> truth_meter_;  // where the scene has a truth
   std::function<void()> recorded_;
   std::unique_ptr<RunMessages> messages_;
+  std::unique_ptr<SurfaceDevice> gpu_;  // computes parts of the expected surface; null: the CPU does
+  bool had_gpu_{false};
+  std::optional<Error> gpu_problem_;
 };
 
 }  // namespace saccade::cli

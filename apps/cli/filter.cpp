@@ -257,10 +257,28 @@ Error failure_after(Error error, const FilterResult& result, const std::string& 
   return error;
 }
 
+PinholeCamera first_camera(const std::vector<InputFrame>& frames, const FilterOptions& options) {
+  const bool has_own = !frames.empty() && frames.front().camera;
+  return has_own ? options.camera_options.camera(*frames.front().camera) : options.camera;
+}
+
+/// Says that the frames are not a Kinect v2's, by their size, and are filtered with its emitter; empty otherwise.
+std::string sensor_note(const std::vector<InputFrame>& frames, const FilterOptions& options) {
+  const PinholeCamera camera = first_camera(frames, options);
+  const PinholeCamera kinect = camera_preset("kinect-v2").value();
+  const bool is_kinect = camera.width == kinect.width && camera.height == kinect.height;
+  if (is_kinect || options.filter.baseline_m != DepthFilterConfig{}.baseline_m) return {};
+  const auto size_of = [](const PinholeCamera& of) {
+    return std::to_string(of.width) + "x" + std::to_string(of.height);
+  };
+  return "the camera has " + size_of(camera) + " pixels, a Kinect v2 " + size_of(kinect) +
+         ": the filter is for a Kinect v2, with its emitter 8 cm beside the camera, and removes good points of other "
+         "sensors; see --baseline, --emitter and --only";
+}
+
 /// Warns, once for all frames, of a camera that is valid but strange.
 std::string camera_warning(const std::vector<InputFrame>& frames, const FilterOptions& options) {
-  PinholeCamera camera = options.camera;
-  if (!frames.empty() && frames.front().camera) camera = options.camera_options.camera(*frames.front().camera);
+  const PinholeCamera camera = first_camera(frames, options);
   const std::string doubt = Intrinsics::doubt(camera);
   return doubt.empty() ? doubt : "warning: " + doubt;
 }
@@ -281,6 +299,7 @@ class Filter final : public Command {
     SACCADE_CHECK(context.open_folder());
     const RunFolder& out = *context.folder();
     for (const std::string& note : input.notes) context.bar().note(note);
+    if (const std::string note = sensor_note(frames, filter_); !note.empty()) context.bar().note(note);
     FilterResult result;
     SACCADE_CHECK(begin(context, frames, result));
     const Status filtered = filter_all(frames, filter_, out, context.executor(), context.bar(), result);

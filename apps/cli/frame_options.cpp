@@ -113,6 +113,9 @@ Result<std::unique_ptr<RgbdFolderSource>> open_source(const FrameOptions& option
     return open_bag_frames(options.frames, bag);
   }
   std::error_code ignored;
+  if (!std::filesystem::exists(std::filesystem::status(options.frames, ignored))) {
+    return Error{Errc::not_found, "there is no such file or folder", options.frames.string()};
+  }
   if (std::filesystem::is_regular_file(options.frames, ignored)) {
     return Error{Errc::invalid_argument,
                  "this file is neither a bag of ROS 1 nor an MCAP file; other frames are read from a folder",

@@ -194,7 +194,8 @@ std::string fuse_text(const FuseRun& run, const TsdfSnapshot& map) {
     summary.line("residual", millimetres(run.fit->residual.median_m()) + " median over " +
                                  percent(run.fit->residual.share()) + " of the pixels");
   }
-  if (run.trajectory) {
+  constexpr std::size_t kLeastPoses{3};  // alignment leaves nothing of the error of fewer
+  if (run.trajectory && run.trajectory->poses >= kLeastPoses) {
     summary.line("trajectory", millimetres(run.trajectory->aligned_rmse_m) + " RMSE aligned, " +
                                    millimetres(run.trajectory->first_pose_rmse_m) + " from the first pose");
   }

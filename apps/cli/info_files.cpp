@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fstream>
 
 #include "saccade/io/bags/bags.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
@@ -21,7 +22,7 @@ constexpr const char* kKnown{
     ".stl, .glb), an "
     "array (.npy), a bag (.bag, .mcap), a session (.sacann), a campaign (.sqlite), a result (.json), an arm (.urdf, "
     ".xacro), a "
-    "scene or cell (.yaml), a hand's trajectory (.traj), or the folder of a run or of RGB-D frames"};
+    "scene or cell (.yaml), a hand's trajectory (.traj, .csv), or the folder of a run or of RGB-D frames"};
 /// Results in folders, by their names.
 constexpr std::array<std::string_view, 5> kDocuments{"run.json", "update.json", "views.json", "attend.json",
                                                      "filter.json"};
@@ -109,6 +110,14 @@ Result<Description> describe_ply(const fs::path& path, const Executor& executor)
   return faces != nullptr && faces->table.rows > 0 ? describe_mesh(path) : describe_cloud(path, executor);
 }
 
+/// Tells by the header whether a CSV file holds the motion of a hand, not a cloud.
+bool is_hand_csv(const fs::path& path) {
+  std::ifstream file{path};
+  std::string header;
+  std::getline(file, header);
+  return header.find("time") != std::string::npos;
+}
+
 }  // namespace
 
 Result<Description> describe_file(const fs::path& path, const Executor& executor) {
@@ -120,7 +129,7 @@ Result<Description> describe_file(const fs::path& path, const Executor& executor
   if (ending == ".sacmap") return describe_map_file(path, executor);
   if (ending == ".ply") return describe_ply(path, executor);
   if (is_mesh_file(path)) return describe_mesh(path);
-  if (ending == ".traj") return describe_hand(path);
+  if (ending == ".traj" || (ending == ".csv" && is_hand_csv(path))) return describe_hand(path);
   if (ending == ".npy") return is_cloud(path) ? describe_cloud(path, executor) : describe_array(path);
   if (ending == ".sacann") return describe_session(path);
   if (ending == ".sqlite") return describe_campaign(path);

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <iomanip>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 #include "context.hpp"
 #include "length_options.hpp"
@@ -126,13 +128,54 @@ json result_json(const NbvOptions& options, const Candidates& candidates, const 
           {"views", std::move(views)}};
 }
 
+/// Views of the printed table, by their places in the ranking: of each position on the sphere the best roll, and none
+/// without gain.
+struct TableRows {
+  std::vector<std::size_t> ranks;
+  std::size_t other_rolls{0};   ///< left out beside the best one
+  std::size_t without_gain{0};  ///< only where the table would go on with them
+};
+
+TableRows table_rows(const Candidates& candidates, const std::vector<OrderedView>& ranked, std::size_t most) {
+  std::set<std::tuple<double, double, double>> positions_um;
+  TableRows rows;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    if (ranked[i].gain == 0) {
+      if (rows.ranks.size() < most) rows.without_gain = ranked.size() - i;
+      break;
+    }
+    const bool is_full = rows.ranks.size() == most;
+    if (!candidates.sphere.empty()) {
+      const Eigen::Array3d at_um = (1e6 * ranked[i].T_world_camera.translation()).array().round();
+      const std::tuple position_um{at_um.x(), at_um.y(), at_um.z()};
+      const bool is_other_roll =
+          is_full ? positions_um.contains(position_um) : !positions_um.insert(position_um).second;
+      rows.other_rolls += is_other_roll ? 1 : 0;
+      if (is_other_roll) continue;
+    }
+    if (!is_full) rows.ranks.push_back(i);
+  }
+  return rows;
+}
+
+/// Says which views the table leaves out; empty where it has all that were asked for.
+std::string unlisted_text(const TableRows& rows) {
+  std::string text;
+  if (rows.other_rolls > 0) text = std::to_string(rows.other_rolls) + " other rolls of these positions";
+  if (rows.without_gain > 0) {
+    text += (text.empty() ? "" : ", ") + std::to_string(rows.without_gain) + " of gain 0";
+  }
+  return text.empty() ? text : "views left out: " + text + " (--all --json FILE has all)\n";
+}
+
 std::string table_of(const NbvOptions& options, const Candidates& candidates, const GainResult& gains,
-                     const std::vector<OrderedView>& ranked, std::size_t shown) {
+                     const std::vector<OrderedView>& ranked, std::size_t most) {
   std::ostringstream text;
   text << "rank      gain  ";
   if (!candidates.sphere.empty()) text << "longitude  latitude   roll  ";
   text << "position (m)\n";
-  for (std::size_t i = 0; i < shown; ++i) {
+  const TableRows rows = table_rows(candidates, ranked, most);
+  for (const std::size_t i : rows.ranks) {
     const OrderedView& view = ranked[i];
     text << std::right << std::setw(4) << i + 1 << std::setw(10) << view.gain << "  ";
     if (!candidates.sphere.empty()) {
@@ -145,6 +188,7 @@ std::string table_of(const NbvOptions& options, const Candidates& candidates, co
     for (int axis = 0; axis < 3; ++axis) text << std::setw(8) << fixed(p[axis], 3);
     text << '\n';
   }
+  text << unlisted_text(rows);
   const char* unit = options.gain.count == GainCount::rays ? "rays" : "distinct voxels";
   text << "gain: " << unit << " that would end in unknown space of the region; " << gains.gains.size() << " poses in "
        << fixed(gains.prepare_ms + gains.evaluate_ms, 0) << " ms, " << gains.rays_cast << " rays cast one by one\n";

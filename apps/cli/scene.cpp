@@ -2,11 +2,13 @@
 // saccade scene list|render|export, scan and sequence: the scenes there are, a picture of one, and its truth for others
 // to check against.
 #include <array>
+#include <cmath>
 #include <iomanip>
 #include <numeric>
 #include <sstream>
 
 #include "context.hpp"
+#include "interrupt.hpp"
 #include "length_options.hpp"
 #include "run_options.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
@@ -19,6 +21,7 @@
 #include "saccade/trial/metrics.hpp"
 #include "scene_scan.hpp"
 #include "scene_sequence.hpp"
+#include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -176,6 +179,20 @@ class SceneRender final : public Command {
   std::optional<std::pair<int, int>> image_size_;
 };
 
+/// Refuses a spacing at which the points of a large scene would not fit into memory.
+Status check_points(const RayScene& rays, double spacing_m) {
+  constexpr double kMostPoints{2e7};
+  const double area_m2 = surface_area_m2(rays.meshes(), rays.scene().workspace);
+  const double points = area_m2 / (spacing_m * spacing_m);
+  if (points <= kMostPoints) return {};
+  const double fitting_m = 0.001 * std::ceil(1000.0 * std::sqrt(area_m2 / kMostPoints));
+  return Error{Errc::invalid_argument,
+               fixed(area_m2, 0) + " m² of surface have " + fixed(1e-6 * points, 0) +
+                   " million points at a spacing of " + millimetres(spacing_m) +
+                   ", and 20 million are the most; --spacing " + fixed(fitting_m, 3) + " would do",
+               rays.scene().name};
+}
+
 class SceneExport final : public Command {
  public:
   [[nodiscard]] CommandInfo info() const override {
@@ -207,10 +224,14 @@ class SceneExport final : public Command {
     const RunFolder& out = *context.folder();
     SACCADE_TRY(Scene scene, find_scene(scene_, mesh_));
     SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
+    SACCADE_CHECK(check_points(rays, spacing_m_));
     context.bar().update("sampling the surface", 0, 2);
     const SurfaceSamples samples = sample_surfaces(rays.meshes(), spacing_m_, rays.scene().workspace);
     context.bar().update("finding what can be seen", 1, 2);
-    const std::vector<std::uint8_t> seen = observable(rays, samples, {}, executor);
+    Progress cancel;
+    const CancelOnInterrupt guard{cancel};
+    const std::vector<std::uint8_t> seen = observable(rays, samples, {}, executor, cancel);
+    if (cancel.cancelled()) return Error{Errc::cancelled, "interrupted; nothing was written", context.out().string()};
     SACCADE_CHECK(write_true_mesh(out / "true_mesh.ply", rays));
     SACCADE_CHECK(write_surface(out / "surface.ply", samples, seen));
     if (pictures_) SACCADE_CHECK(write_png(out / "scene.png", picture_of(rays, 960, 720, executor)));

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "saccade/attention/salient_objects.hpp"
 #include "saccade/io/clouds/cloud_upright.hpp"
 #include "saccade/report/segment_picture.hpp"
 #include "score_json.hpp"
@@ -76,14 +77,42 @@ json timings_json(const SegmentOptions& options, const SegmentFindings& findings
 
 json text_or_null(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
 
-/// The most salient first, equal ones in their order.
+double longest_m(const SegmentMeasures& segment) { return segment.sizes_m.maxCoeff(); }
+
+double scrap_length_m() {
+  static const double length_m{SalientObjectsConfig{}.scrap_length_m};
+  return length_m;
+}
+
+/// Whether a segment comes last in an exploration, too: specks stand alone and look round.
+bool is_scrap(const SegmentMeasures& segment) { return longest_m(segment) <= scrap_length_m(); }
+
+/// The most salient first, equal ones in their order, scraps after all others.
 std::vector<std::size_t> by_saliency(const SegmentFindings& findings) {
   std::vector<std::size_t> order(findings.saliencies.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const bool is_last = is_scrap(findings.measures[b]);
+    if (is_scrap(findings.measures[a]) != is_last) return is_last;
     return findings.saliencies[a].value > findings.saliencies[b].value;
   });
   return order;
+}
+
+/// "21.0 cm", and "0.58 mm" below a centimetre.
+std::string length_text(double length_m) {
+  constexpr double kSmall_m{0.01};
+  return length_m < kSmall_m ? millimetres(length_m) : fixed(100.0 * length_m, 1) + " cm";
+}
+
+/// Says that scraps come last; empty where all segments are scraps, or none is.
+std::string scraps_text(const SegmentFindings& findings) {
+  const std::vector<SegmentMeasures>& all = findings.measures;
+  const auto scraps = std::count_if(all.begin(), all.end(), is_scrap);
+  if (scraps == 0 || static_cast<std::size_t>(scraps) == all.size()) return {};
+  const std::string length = " no longer than " + length_text(scrap_length_m());
+  return scraps == 1 ? "1 segment" + length + " comes last, whatever its saliency\n"
+                     : std::to_string(scraps) + " segments" + length + " come last, whatever their saliency\n";
 }
 
 /// Returns the distance between neighbouring surfels, in metres, from the median radius.
@@ -169,14 +198,16 @@ std::string segments_text(const SegmentOptions& options, const SegmentFindings& 
   if (!options.report.empty()) summary.line("report", options.report.string());
   constexpr std::size_t kShown{10};
   const std::vector<std::size_t> order = by_saliency(findings);
-  text << "\nsegment   points  saliency  roundness  isolation  why\n";
+  text << "\nsegment   points    longest  saliency  roundness  isolation  why\n";
   for (std::size_t i = 0; i < std::min(kShown, order.size()); ++i) {
     const std::size_t s = order[i];
-    text << std::right << std::setw(7) << s + 1 << std::setw(9) << findings.measures[s].points << std::setw(10)
-         << fixed(findings.saliencies[s].value, 3) << std::setw(11) << fixed(findings.measures[s].roundness, 3)
-         << std::setw(11) << fixed(findings.measures[s].isolation, 3) << "  " << findings.saliencies[s].why << '\n';
+    text << std::right << std::setw(7) << s + 1 << std::setw(9) << findings.measures[s].points << std::setw(11)
+         << length_text(longest_m(findings.measures[s])) << std::setw(10) << fixed(findings.saliencies[s].value, 3)
+         << std::setw(11) << fixed(findings.measures[s].roundness, 3) << std::setw(11)
+         << fixed(findings.measures[s].isolation, 3) << "  " << findings.saliencies[s].why << '\n';
   }
   if (order.size() > kShown) text << "... and " << order.size() - kShown << " more, all in the JSON result\n";
+  text << scraps_text(findings);
   return text.str();
 }
 

@@ -22,6 +22,12 @@ std::string delivered_text(const ViewRecord& view) {
 
 }  // namespace
 
+std::string rehearsal_line(const ViewRecord& view, const std::string& gain_unit) {
+  const Eigen::Vector3d p = view.T_world_camera.translation();
+  return "rehearsed at (" + fixed(p.x(), 3) + ", " + fixed(p.y(), 3) + ", " + fixed(p.z(), 3) + ") m  promised " +
+         gain_text(view.gain_predicted) + ' ' + gain_unit + ": the arm would go there; nothing was looked at";
+}
+
 std::string view_line(std::size_t number, const ViewRecord& view, const std::string& gain_unit) {
   const Eigen::Vector3d p = view.T_world_camera.translation();
   std::ostringstream text;

@@ -13,6 +13,8 @@ namespace saccade::cli {
 /// "view  3  at (0.120, -0.300, 0.550) m  promised 488.0 cm²  delivered 412.3 (84 %)  …": pose, gains, measures,
 /// candidates that the robot refused, and the seconds that the view took, those of the motion included.
 [[nodiscard]] std::string view_line(std::size_t number, const ViewRecord& view, const std::string& gain_unit);
+/// "rehearsed  at (…) m  promised 488.0 cm²; nothing was looked at": a view of a dry run.
+[[nodiscard]] std::string rehearsal_line(const ViewRecord& view, const std::string& gain_unit);
 
 /// Stands last among recorders: it says measures that the others have added.
 class ViewLines final : public Recorder {

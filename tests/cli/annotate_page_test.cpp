@@ -33,6 +33,9 @@ TEST_F(AnnotatePage, SaysWhereTheLabelsGoBeforeThePageIsServed) {
 TEST_F(AnnotatePage, ACloudThatCannotBeReadIsSaidBeforeThereIsAPage) {
   const Outcome outcome = run_program({"annotate", write("broken.pcd", "no cloud\n"), "--no-browser"});
   expect_failure(outcome, 3, "annotate", {"broken.pcd"});
+  EXPECT_EQ(outcome.err.find("the names of clouds end in"), std::string::npos) << outcome.err;
+  const Outcome cell = run_program({"annotate", write("cell.yaml", "# A cell.\ncell:\n"), "--no-browser"});
+  expect_failure(cell, 3, "annotate", {"cell.yaml", "the names of clouds end in .pcd, .ply"});
 }
 
 /// A named pipe stands for a cloud that takes long to read.

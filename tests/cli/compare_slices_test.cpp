@@ -2,6 +2,7 @@
 // saccade compare in slices: shards, their merge, how far they are, and the script for Slurm.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 
 #include "campaign_bits.hpp"
@@ -39,6 +40,10 @@ TEST(CompareSlices, ThreeInAnyOrderEqualOneMachine) {
       ASSERT_EQ(done.status, 0) << done.err;
       EXPECT_NE(done.out.find("2 done now, 0 found"), std::string::npos) << done.out;
     }
+    const Outcome listed = run_program(compare(out, wanted + Arguments{"--list"}));
+    EXPECT_NE(listed.out.find("6 runs, 6 of them done"), std::string::npos) << listed.out;
+    expect_failure(run_program(compare(out, wanted + Arguments{"--quiet"})), 3, "compare",
+                   {"6 runs that are not merged", "--merge first"});
     const Outcome merged = run_program(compare(out, wanted + Arguments{"--merge", "--quiet", "--json", "-"}));
     ASSERT_EQ(merged.status, 0) << merged.err;
     const nlohmann::json result = merged.json().at("result");
@@ -183,6 +188,22 @@ TEST(CompareSlices, AFolderThatIsNoCampaignIsRefused) {
     "job": "", "began": "", "ended": "", "error": "scene.yaml: there is no such file"})";
   expect_failure(run_program(compare(folder / "failed", {"--merge"})), 3, "compare",
                  {"no shards to merge", "slice 0 of 2", "scene.yaml: there is no such file"});
+}
+
+TEST(CompareSlices, ASliceOfAnotherMachineIsLostOnceItsRecordIsOld) {
+  const TempFolder folder;
+  const fs::path shard = folder / "out/shards/0-of-1";
+  fs::create_directories(shard);
+  std::ofstream{shard / "shard.json"} << R"({"slice": 0, "of": 1, "state": "running", "tries": 1, "machine": "node7",
+    "job": "12_0", "began": "2024-06-30T12:00:00Z", "ended": "", "error": ""})";
+  const auto state = [&] {
+    const Outcome status = run_program(compare(folder / "out", {"--seeds", "1", "--status", "--json", "-"}));
+    EXPECT_EQ(status.status, 0) << status.err;
+    return status.json().at("result").at("slices").at(0).at("state").get<std::string>();
+  };
+  EXPECT_EQ(state(), "running");
+  fs::last_write_time(shard / "shard.json", fs::file_time_type::clock::now() - std::chrono::minutes{20});
+  EXPECT_EQ(state(), "lost");
 }
 
 TEST(CompareSlices, ASliceThatCannotBeginLeavesARecord) {

@@ -7,6 +7,7 @@
 #include "compare_runs.hpp"
 #include "report_page.hpp"
 #include "saccade/io/files/json_io.hpp"
+#include "saccade/io/files/sqlite_file.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "support/effort.hpp"
 
@@ -263,6 +264,33 @@ TEST(CompareCommand, EveryMeshOfAFolderIsAScene) {
   const Outcome one =
       run_program(once(folder / "out", meshes + "/box.obj", {"--mesh-scale", "0.001", "--robot", "comau", "--list"}));
   EXPECT_NE(one.out.find("1 runs, 1 of them done"), std::string::npos) << one.out << one.err;
+}
+
+TEST(CompareCommand, ASceneThatFailsDoesNotStopTheOthers) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; GoesOnWhereItStopped makes two";
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  for (const char* name : {"away", "far"}) {  // seen from nowhere
+    folder.write(std::string{name} + ".yaml",
+                 std::string{"scene: "} + name +
+                     "\nworkspace: {min: [-0.5, -0.5, 0], max: [0.5, 0.5, 0.4]}\nobjects:\n"
+                     "  - {name: ball, sphere: {radius: 0.05}, at: [3, 0, 0]}\n");
+  }
+  const std::string scenes =
+      (folder / "away.yaml").string() + ',' + tiny_cell_file() + ',' + (folder / "far.yaml").string();
+  expect_failure(run_program(once(out, scenes, {"--jobs", "1"})), 3, "compare",
+                 {"away", "no surface of an object can be seen", "1 more failed", "1 run was done and kept"});
+  ASSERT_EQ(runs_in(out).size(), 1U);
+
+  // Its run counts as done where another version made it, and that is said.
+  {
+    const SqliteFile database = SqliteFile::open(out / "campaign.sqlite", 1000).value();
+    ASSERT_TRUE(database.run("UPDATE runs SET program_version = '0.0.9'"));
+  }
+  const Outcome found = run_program(once(out, tiny_cell_file(), {"--json", (folder / "result.json").string()}));
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_NE(found.out.find("1 run by 0.0.9: versions may differ"), std::string::npos) << found.out;
+  EXPECT_EQ(read_json(folder / "result.json")->at("result").at("versions").dump(), R"({"0.0.9":1})");
 }
 
 TEST(CompareCommand, ScenesInWhichThereIsNothing) {

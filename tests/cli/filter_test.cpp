@@ -283,6 +283,19 @@ TEST_F(Filter, TakesTheDepthImagesOfARecordingAndItsCamera) {
   EXPECT_EQ(decode_depth(read_png16(out() / "frame-000000.depth.png").value(), {}), expected);
 }
 
+TEST_F(Filter, SaysThatItIsForAKinect) {
+  const fs::path file = folder_ / "other.png";
+  ASSERT_TRUE(write_png16(file, Image16{640, 480, 1000}));
+  const auto notes_with = [&](const Arguments& more) {
+    const Outcome outcome = run_program(
+        Arguments{"filter", file.string(), "--out", out().string(), "--no-pictures", "--camera", "kinect-v1"} + more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(notes_with({}).find("640x480 pixels, a Kinect v2 512x424"), std::string::npos);
+  EXPECT_EQ(notes_with({"--baseline", "0.075"}).find("Kinect v2"), std::string::npos);
+}
+
 TEST_F(Filter, LeavesOutLabelsColoursAndMasksByTheirNames) {
   for (const char* other : {"depth-0.label.png", "depth-0.color.png", "mask.png"}) {
     ASSERT_TRUE(write_png16(frames() / other, Image16{512, 424, 1000}));

@@ -147,7 +147,8 @@ TEST_F(FuseLayouts, AFolderInNoLayoutHearsWhichIsNearest) {
   fs::rename(frames() / "scene_camera.json", frames() / "intrinsic_depth.txt");
   expect_failure(run_program(command), 3, "fuse", {"nearest is that of ScanNet", "lacks depth/N.png"});
   depth("scan/depth/0.png", 1000.0);
-  expect_failure(run_program(command), 3, "fuse", {"scan/ in it is one of Open3D"});
+  expect_failure(run_program(command), 3, "fuse",
+                 {"scan/ in it is one of Open3D", "; try " + (frames() / "scan").string()});
   EXPECT_FALSE(fs::exists(folder_ / "run"));
 }
 

@@ -120,6 +120,23 @@ TEST_F(Fuse, PrintsASummaryForPeople) {
   }
 }
 
+TEST_F(Fuse, NeedsThreePosesForAnErrorOfTheTrajectory) {
+  const auto text_with = [&](const char* count) {
+    const Outcome outcome =
+        run_program(fuse(frames(), run(), {"--tracking", "icp", "--no-pictures", "--no-mesh", "--count", count}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  EXPECT_EQ(text_with("1").find("RMSE"), std::string::npos);
+  EXPECT_NE(text_with("3").find("RMSE aligned"), std::string::npos);
+}
+
+TEST_F(Fuse, WhatIsNotThereIsNoFolder) {
+  const std::string bag = (folder_ / "nothere.bag").string();
+  expect_failure(run_program({"fuse", bag, "--depth", "/depth", "--out", run().string()}), 3, "fuse",
+                 {bag, "there is no such file or folder"});
+}
+
 TEST_F(Fuse, ProgressGoesToStandardErrorAsLines) {
   const Outcome outcome =
       run_program({"fuse", frames().string(), "--out", run().string(), "--voxel-size", "0.01", "--no-pictures"});

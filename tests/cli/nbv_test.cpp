@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
+#include <sstream>
 
 #include "cli/run_program.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -79,7 +81,8 @@ TEST_F(Nbv, PrintsATableAndDraws) {
       run_program(nbv({"--poi", "0,0,0.05", "--forget", "--top", "3", "--out", (folder_ / "views").string()}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(outcome.out.starts_with("rank      gain  longitude  latitude   roll  position")) << outcome.out;
-  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 6) << outcome.out;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 7) << outcome.out;
+  EXPECT_NE(outcome.out.find(" other rolls of these positions"), std::string::npos) << outcome.out;
   EXPECT_EQ(names_in(folder_ / "views"), (std::vector<std::string>{"views.json", "views.png"}));
   const auto picture = read_color(folder_ / "views" / "views.png");
   ASSERT_TRUE(picture);
@@ -87,6 +90,25 @@ TEST_F(Nbv, PrintsATableAndDraws) {
   const auto poses = read_poses(folder_ / "views" / "views.json");  // what nbv writes, nbv reads
   ASSERT_TRUE(poses);
   EXPECT_EQ(poses->size(), 3U);
+}
+
+TEST_F(Nbv, PrintsEachPositionOnceAndNoneWithoutGain) {
+  const Outcome outcome = run_program(nbv({"--poi", "0,0,0.05", "--forget", "--all"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::istringstream lines{outcome.out};
+  std::set<std::string> positions;
+  for (std::string line;
+       std::getline(lines, line) && !line.starts_with("views left out: ") && !line.starts_with("gain: ");) {
+    if (line.starts_with("rank")) continue;
+    EXPECT_TRUE(positions.insert(line.substr(line.rfind("°  "))).second) << line;
+    std::istringstream words{line};
+    std::size_t rank{0};
+    std::uint64_t gain{0};
+    ASSERT_TRUE(words >> rank >> gain) << line;
+    EXPECT_GT(gain, 0U) << line;
+  }
+  EXPECT_GT(positions.size(), 2U);
+  EXPECT_LE(positions.size(), 109U);  // nine rings of twelve, and the pole
 }
 
 TEST_F(Nbv, DrawsAsManyViewsAsAreAskedFor) {

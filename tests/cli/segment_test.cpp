@@ -127,11 +127,39 @@ TEST_F(Segment, IsTheSameForEveryThreadCountAndEncoding) {
 TEST_F(Segment, PrintsTheMostSalientFirst) {
   const Outcome outcome = run_program(segment());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* part : {"points ", "supervoxels ", "segments ", "ms LCCP", "saliency  roundness  isolation  why"}) {
+  for (const char* part :
+       {"points ", "supervoxels ", "segments ", "ms LCCP", "longest  saliency  roundness  isolation  why"}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part << outcome.out;
   }
   const std::string first = outcome.out.substr(outcome.out.find("why\n") + 4, 60);
   EXPECT_NE(first.find("0.9"), std::string::npos) << first;
+}
+
+TEST_F(Segment, ListsSpecksLast) {
+  constexpr std::array<float, 3> kHalf_m{0.0003F, 0.00028F, 0.00026F};  // six points, alone in the air
+  ColumnTable with_speck;
+  for (std::size_t k = 0; k < 6; ++k) {
+    std::vector<float> values = fields_.columns[k].values<float>();
+    for (std::size_t i = 0; i < 6; ++i) {
+      const float off_m = i / 2 != k ? 0.0F : (i % 2 == 0 ? kHalf_m[k] : -kHalf_m[k]);
+      values.push_back(k < 3 ? 0.5F + off_m : (k == 5 ? 1.0F : 0.0F));
+    }
+    with_speck.add<float>(fields_.columns[k].name, values);
+  }
+  ASSERT_TRUE(write_pcd(cloud(), with_speck));
+  const Outcome outcome = run_program(segment({"--json", (folder_ / "specks.json").string()}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::size_t speck_row = outcome.out.find("0.60 mm");
+  const std::size_t table_row = outcome.out.find("60.0 cm");
+  ASSERT_NE(speck_row, std::string::npos) << outcome.out;
+  EXPECT_LT(table_row, speck_row) << outcome.out;
+  EXPECT_NE(outcome.out.find("1 segment no longer than 3.0 cm comes last"), std::string::npos) << outcome.out;
+  const nlohmann::json document = nlohmann::json::parse(text_of(folder_ / "specks.json"));
+  const nlohmann::json& segments = document.at("result").at("segments");
+  const auto speck =
+      std::find_if(segments.begin(), segments.end(), [](const nlohmann::json& each) { return each.at("points") == 6; });
+  ASSERT_NE(speck, segments.end());
+  EXPECT_GT(speck->at("saliency").get<double>(), 0.8);  // it is the order that differs
 }
 
 TEST_F(Segment, TakesEveryHeuristicAndBlends) {

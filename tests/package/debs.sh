@@ -21,6 +21,14 @@ consume() {  # PREFIX: a program that finds the library there prints what it sho
   "$work/consumer/consumer" | grep -x '1.005 m: occupied'
 }
 
+told() {  # COMMAND…: what `saccade info` says; fails where the program was built without kernels for GPUs
+  "$@" info | tee "$work/info.txt"
+  if grep 'this build has no kernels' "$work/info.txt" >"$work/no_kernels.txt"; then
+    echo "the packages were built without clang: their program can use no GPU" >&2
+    exit 1
+  fi
+}
+
 echo "== find_package(saccade)"
 for package in "$packages"/*.deb; do dpkg -x "$package" "$work/unpacked"; done
 consume "$work/unpacked/usr"
@@ -30,7 +38,7 @@ grep -q x-saccade-map "$work/unpacked/usr/share/mime/globs2"
 
 if [[ -z ${SACCADE_CLEAN_ROOT:-} ]]; then
   echo "== used from where they were unpacked"
-  "$work/unpacked/usr/bin/saccade" info
+  told "$work/unpacked/usr/bin/saccade"
   "$work/unpacked/usr/bin/saccade" explore tabletop-1 --out "$work/run" --max-views 1 --quiet --no-pictures
   export PYTHONPATH="$work/unpacked/usr/lib/python3/dist-packages"
   /usr/bin/python3 -B -c 'import saccade; print(saccade.__file__, saccade.TsdfMap(voxel_size_m=0.01))'
@@ -56,7 +64,7 @@ files >"$work/before.txt"
 began=$SECONDS
 inside sh -c 'dpkg -i /tmp/packages/*.deb' >"$work/dpkg.log" 2>&1
 echo "installed in $((SECONDS - began)) s"
-inside saccade info
+told inside saccade
 inside saccade explore tabletop-1 --out /tmp/run --max-views 1 --quiet --no-pictures
 inside python3 -c 'import saccade; print(saccade.TsdfMap(voxel_size_m=0.01))'
 inside python3 -m saccade --version

@@ -9,7 +9,10 @@ namespace saccade::test {
 /// Asks check() before each operation, and returns its error instead of doing it.
 class CheckedCompute : public internal::cuda::Compute {
  public:
-  explicit CheckedCompute(std::size_t memory_bytes = ~std::size_t{0}) : device_{Executor{}, memory_bytes} {}
+  /// @param order as of HostCompute.
+  explicit CheckedCompute(std::size_t memory_bytes = ~std::size_t{0}, const Executor& executor = {},
+                          std::uint32_t order = 0)
+      : device_{executor, memory_bytes, order} {}
 
   [[nodiscard]] Result<void*> allocate(std::size_t bytes) final {
     SACCADE_CHECK(check());
@@ -36,6 +39,7 @@ class CheckedCompute : public internal::cuda::Compute {
                               const void* arguments) final {
     SACCADE_CHECK(check());
     SACCADE_CHECK(check_kernel(kernel));
+    watch(kernel, blocks);
     return device_.launch(kernel, blocks, arguments);
   }
   [[nodiscard]] Status finish() final { return check(); }
@@ -43,6 +47,7 @@ class CheckedCompute : public internal::cuda::Compute {
  protected:
   [[nodiscard]] virtual Status check() = 0;
   [[nodiscard]] virtual Status check_kernel(const internal::cuda::KernelEntry& /*kernel*/) { return {}; }
+  virtual void watch(const internal::cuda::KernelEntry& /*kernel*/, std::size_t /*blocks*/) {}
 
  private:
   internal::cuda::HostCompute device_;

@@ -7,6 +7,7 @@
 
 #include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
+#include "saccade/io/runs/run_json.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/ray_hits.hpp"
@@ -128,6 +129,61 @@ TEST(ShowDocuments, AFusionHasTheCamerasWay) {
   const auto without = open_document(folder.path(), {});
   ASSERT_TRUE(without) << without.error().to_string();
   EXPECT_TRUE(without->layers.empty());
+}
+
+TEST(ShowDocuments, TheUpdateOfACellHasTheViewsOfAllItsTasks) {
+  const TempFolder folder;
+  const auto views = [](std::size_t count) {
+    ViewRecord view;
+    view.gain_predicted = 80.0;
+    return views_to_json(std::vector<ViewRecord>(count, view));
+  };
+  const nlohmann::json result{{"cell", "bench"},
+                              {"initial", scan_to_json(ScanRecord{})},
+                              {"tasks", {{{"views", views(2)}}, {{"views", views(0)}}, {{"views", views(1)}}}}};
+  folder.write("update.json", nlohmann::json{{"command", "update"}, {"result", result}}.dump());
+  for (const char* picture : {"task-1/view-01-seen.png", "task-3/view-01-seen.png"}) folder.write(picture, "a picture");
+  const auto shown = open_document(folder.path(), {});
+  ASSERT_TRUE(shown) << shown.error().to_string();
+  EXPECT_EQ(shown->title, "Updates of bench");
+  EXPECT_EQ(shown->facts, (Facts{{"scene", "bench"}, {"views", "3"}, {"tasks", "3"}}));
+  ASSERT_EQ(shown->steps.size(), 4U);
+  EXPECT_EQ(shown->steps[0].name, "Scan");
+  EXPECT_EQ(shown->steps[1].name, "Task 1, view 1");
+  EXPECT_EQ(shown->steps[2].name, "Task 1, view 2");
+  EXPECT_EQ(shown->steps[3].name, "Task 3, view 1");
+  EXPECT_TRUE(shown->steps[3].T_world_camera);
+  ASSERT_EQ(shown->steps[1].pictures.size(), 1U);
+  ASSERT_EQ(shown->steps[3].pictures.size(), 1U);
+  EXPECT_EQ(shown->steps[1].pictures[0].name, "task-1/view-01-seen.png");
+  EXPECT_EQ(shown->steps[3].pictures[0].name, "task-3/view-01-seen.png");
+  EXPECT_EQ(shown->steps[3].pictures[0].path, folder / "task-3/view-01-seen.png");
+
+  folder.write("update.json", R"({"command": "update", "result": {"cell": "bench", "tasks": [7]}})");
+  const auto odd = open_document(folder.path(), {});
+  ASSERT_TRUE(odd) << odd.error().to_string();
+  EXPECT_TRUE(odd->steps.empty());
+}
+
+TEST(ShowDocuments, AFolderWithoutARunSaysWhereItsPageIs) {
+  const TempFolder folder;
+  const auto refused = [](const std::filesystem::path& path) {
+    const auto document = open_document(path, {});
+    EXPECT_FALSE(document) << path;
+    return document ? std::string{} : document.error().message;
+  };
+  folder.write("segments/report.html", "a page");
+  folder.write("compared/index.html", "a page");
+  folder.write("cell/update.json", "{}");
+  folder.write("cell/task-1/report.html", "a page");
+  folder.write("bare/words.md", "words");
+  for (const std::string slash : {"", "/"}) {
+    const auto in = [&](const char* name) { return refused((folder / name).string() + slash); };
+    EXPECT_TRUE(in("segments").ends_with("open " + (folder / "segments/report.html").string() + " in a browser"));
+    EXPECT_TRUE(in("compared").ends_with("open " + (folder / "compared/index.html").string() + " in a browser"));
+    EXPECT_NE(in("cell/task-1").find("show " + (folder / "cell").string() + ";"), std::string::npos);
+    EXPECT_EQ(in("bare").find("browser"), std::string::npos);
+  }
 }
 
 TEST(ShowDocuments, SaysWhatIsNothingToShow) {

@@ -9,10 +9,22 @@
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
+namespace {
+
+/// Says which names clouds have where a file that is none has another.
+Error with_cloud_suffixes(Error error, const std::filesystem::path& path) {
+  if (error.code != Errc::corrupt_data || has_cloud_suffix(path)) return error;
+  error.message += "; the names of clouds end in " + std::string{kCloudSuffixes};
+  return error;
+}
+
+}  // namespace
 
 Result<LoadedCloud> load_cloud(const std::filesystem::path& path) {
   LoadedCloud cloud{path, {}, {}, {}};
-  SACCADE_TRY(CloudFile file, read_cloud(path));
+  auto read = read_cloud(path);
+  if (!read) return with_cloud_suffixes(read.error(), path);
+  CloudFile file = std::move(*read);
   SACCADE_TRY(cloud.points, in_file(cloud_from_fields(file.fields()), path));
   cloud.upright_hints = upright_hints_of(file);
   cloud.fields = CloudFields{path, std::move(file)};

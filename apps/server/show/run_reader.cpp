@@ -47,10 +47,27 @@ json result_of_journal(const json& journal) {
   return result;
 }
 
+std::string task_name(std::size_t number) { return "task-" + std::to_string(number); }
+
+/// Returns what to do with a folder that holds no run, to follow that.
+std::string way_to_its_page(const fs::path& folder) {
+  const fs::path whole = (folder / "").parent_path();  // without a slash at the end
+  const fs::path above = whole.has_parent_path() ? whole.parent_path() : ".";
+  std::string way;
+  if (whole.filename().string().starts_with("task-") && is_there(above / "update.json"))
+    way = "; it is a task of an update, so show " + above.string();
+  for (const char* page : {"report.html", "index.html"}) {
+    if (is_there(whole / page)) return way + "; open " + (whole / page).string() + " in a browser";
+  }
+  return way;
+}
+
 std::string title_of(const json& result, const fs::path& folder) {
   const std::string command = text_in(result, "command");
   const std::string scene = text_in(result, "scene");
   if (command == "explore") return "Exploration of " + scene;
+  if (const std::string cell = text_in(result, "cell"); command == "update" && !cell.empty())
+    return "Updates of " + cell;
   if (command == "update") return "Update of " + scene;
   const std::string name = folder.filename().empty() ? folder.parent_path().filename().string()  // "run/"
                                                      : folder.filename().string();
@@ -82,6 +99,12 @@ Result<SceneDocument> RunReader::read(bool live) {
     if (!result.is_object()) result = json::object();
     result["command"] = text_in(record, "command");
     SACCADE_CHECK(read_steps(result));
+    const json tasks = entry_in(result, "tasks");
+    if (tasks.is_array()) {  // as the facts of a run have it
+      result["scene"] = entry_in(result, "cell");
+      result["views"] = json::array();
+      for (RecordedView& recorded : views_in(result)) result["views"].push_back(std::move(recorded.view));
+    }
     SceneDocument document;
     document.record = std::move(record);
     document.folder = folder_;
@@ -89,6 +112,7 @@ Result<SceneDocument> RunReader::read(bool live) {
     document.kind = DocumentKind::run;
     document.live = live;
     document.facts = facts_of_run(result);
+    if (tasks.is_array()) document.facts.emplace_back("tasks", std::to_string(tasks.size()));
     if (!live && result.value("unfinished", false)) document.facts.emplace_back("state", "interrupted");
     if (!why_no_arm_.empty()) document.facts.emplace_back("arm", why_no_arm_);
     SACCADE_CHECK(add_end(document));
@@ -121,13 +145,26 @@ Result<json> RunReader::read_record() const {
     return run;
   }
   if (is_there(folder_ / "map.sacmap") || is_there(folder_ / "mesh.ply")) return json(nullptr);
-  return Error{Errc::not_found, "holds no run: neither run.json nor map.sacmap nor mesh.ply", folder_.string()};
+  return Error{Errc::not_found,
+               "holds no run: neither run.json nor update.json, map.sacmap or mesh.ply" + way_to_its_page(folder_),
+               folder_.string()};
+}
+
+std::vector<RunReader::RecordedView> RunReader::views_in(const json& result) {
+  std::vector<RecordedView> recorded;
+  const auto add = [&](const json& views, std::size_t task) {
+    const std::size_t count = views.is_array() ? views.size() : 0;
+    for (std::size_t i = 0; i < count; ++i) recorded.push_back({i + 1, task, views[i]});
+  };
+  const json tasks = entry_in(result, "tasks");
+  if (!tasks.is_array()) add(entry_in(result, "views"), 0);
+  for (std::size_t i = 0; tasks.is_array() && i < tasks.size(); ++i) add(entry_in(tasks[i], "views"), i + 1);
+  return recorded;
 }
 
 Status RunReader::read_steps(const json& result) {
   const bool has_scan = entry_in(result, "initial").is_object();
-  const json views = entry_in(result, "views");
-  const std::size_t count = views.is_array() ? views.size() : 0;
+  const std::vector<RecordedView> views = views_in(result);
   if (has_scan && steps_.empty()) {
     ReadStep scan;
     SACCADE_TRY(const ScanRecord record, in_file(scan_from_json(result["initial"]), folder_));
@@ -136,8 +173,8 @@ Status RunReader::read_steps(const json& result) {
     steps_.push_back(std::move(scan));
   }
   const std::size_t before_views = has_scan ? 1 : 0;
-  for (std::size_t i = steps_.size() - std::min(steps_.size(), before_views); i < count; ++i) {
-    SACCADE_CHECK(read_step(result, views[i], i + 1));
+  for (std::size_t i = steps_.size() - std::min(steps_.size(), before_views); i < views.size(); ++i) {
+    SACCADE_CHECK(read_step(result, views[i]));
   }
   if (steps_.empty()) {
     std::vector<StepPicture> pictures = pictures_in(folder_);
@@ -146,13 +183,20 @@ Status RunReader::read_steps(const json& result) {
   return {};
 }
 
-Status RunReader::read_step(const json& result, const json& view, std::size_t number) {
+Status RunReader::read_step(const json& result, const RecordedView& recorded) {
+  const auto& [number, task, view] = recorded;
   ReadStep read;
-  SACCADE_TRY(const ViewRecord record, in_file(view_from_json(view), folder_ / ("view " + std::to_string(number))));
+  const fs::path folder = task == 0 ? folder_ : folder_ / task_name(task);
+  SACCADE_TRY(const ViewRecord record, in_file(view_from_json(view), folder / ("view " + std::to_string(number))));
   read.step = {"View " + std::to_string(number), record.T_world_camera, fov_in(result), facts_of_view(record),
-               pictures_of_view(folder_, number)};
-  SACCADE_CHECK(add_choice(result, number, read));
-  SACCADE_CHECK(add_map(number, read));
+               pictures_of_view(folder, number)};
+  if (task == 0) {
+    SACCADE_CHECK(add_choice(result, number, read));
+    SACCADE_CHECK(add_map(number, read));
+  } else {  // tasks keep neither
+    read.step.name = "Task " + std::to_string(task) + ", view " + std::to_string(number);
+    for (StepPicture& picture : read.step.pictures) picture.name = task_name(task) + "/" + picture.name;
+  }
   add_arm(result, record.q, read);
   steps_.push_back(std::move(read));
   return {};

@@ -277,7 +277,12 @@ Result<UrdfArm> find_robot(const std::string& name_or_path, const UrdfConfig& co
     }
     known += std::string{builtin.name} + ", ";
   }
-  if (fs::exists(name_or_path)) return read_urdf(name_or_path, config);
+  const fs::path path{name_or_path};
+  std::error_code ignored;
+  if (fs::exists(path, ignored)) return read_urdf(path, config);
+  const std::string suffix = in_small_letters(path.extension().string());
+  if (path.has_parent_path() || suffix == ".urdf" || suffix == ".xacro")
+    return Error{Errc::not_found, "there is no such file", name_or_path};
   return Error{Errc::not_found, "no such robot; there are " + known + "and URDF files", name_or_path};
 }
 

@@ -23,10 +23,15 @@ std::string number(double value, int decimals) {
 std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 std::string centimetres(double length_m) { return number(100.0 * length_m, 1) + " cm"; }
 
-/// Returns "21.0 × 14.2 × 9.1 cm".
+/// Returns "21.0 × 14.2 × 9.1 cm"; "0.58 × 0.47 × 0.30 mm" of a speck below a centimetre.
 std::string sizes_text(const SegmentMeasures& segment) {
+  constexpr double kSpeck_m{0.01};
   Eigen::Vector3d sizes_m = segment.sizes_m;
   std::sort(sizes_m.begin(), sizes_m.end());
+  if (sizes_m[2] < kSpeck_m) {
+    return number(1000.0 * sizes_m[2], 2) + " × " + number(1000.0 * sizes_m[1], 2) + " × " +
+           number(1000.0 * sizes_m[0], 2) + " mm";
+  }
   return number(100.0 * sizes_m[2], 1) + " × " + number(100.0 * sizes_m[1], 1) + " × " + centimetres(sizes_m[0]);
 }
 

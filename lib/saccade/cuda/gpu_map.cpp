@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "saccade/cuda/internal/cuda_compute.hpp"
 #include "saccade/cuda/internal/gpu_map_impl.hpp"
@@ -82,11 +83,22 @@ Result<FusionStats> GpuMap::integrate(const PinholeCamera& camera, const DepthIm
     return bricks.bring_in(box);
   };
   const auto fuse = [&] {
-    return impl_->fusion.integrate(config(), camera, depth, T_world_camera, bricks.store(), bring_in);
+    impl_->is_fusing = true;
+    Result<FusionStats> fused =
+        impl_->fusion.integrate(config(), camera, depth, T_world_camera, bricks.store(), bring_in);
+    impl_->is_fusing = false;
+    return fused;
   };
   Result<FusionStats> stats = fuse();
-  if (!stats.ok() && !impl_->fusion.failed_halfway() && !bricks.is_paged() &&
-      internal::cuda::is_no_room(stats.error()) && !seen.empty()) {
+  const auto lacks_room = [&] {
+    return !stats.ok() && !impl_->fusion.failed_halfway() && internal::cuda::is_no_room(stats.error());
+  };
+  if (lacks_room()) {
+    impl_->free_scratch();
+    stats = fuse();
+  }
+  if (lacks_room() && !seen.empty() && !bricks.is_paged_to(seen)) {
+    if (bricks.is_paged()) SACCADE_CHECK(bricks.note_too_much());  // else the frame itself may have been too much
     SACCADE_CHECK(bricks.page_to(seen));
     stats = fuse();
   }
@@ -98,7 +110,7 @@ Status GpuMap::assign(const TsdfSnapshot& map) { return follow(map, {}); }
 
 Status GpuMap::follow(const TsdfSnapshot& map, const Executor& executor) {
   SACCADE_CHECK(map.config.validate());
-  return impl_->bricks.assign(map, executor);
+  return impl_->noted(impl_->bricks.assign(map, executor));
 }
 
 Result<TsdfSnapshot> GpuMap::snapshot() const { return impl_->bricks.pull(); }
@@ -130,20 +142,22 @@ Result<GainResult> GpuMap::evaluate_views(const Region& region, std::span<const 
 
 Result<std::uint64_t> GpuMap::read_states(const IndexBox& box, std::span<VoxelState> states) {
   if (box.empty()) return Error{Errc::invalid_argument, "a box without voxels has no states", "cuda"};
-  return impl_->with_bricks(parents(box), [&] {
+  return impl_->noted(impl_->with_bricks(parents(box), [&] {
     return impl_->surface.read_states(impl_->bricks.store(), config().voxel_size_m, box, states);
-  });
+  }));
 }
 
 Result<std::vector<ExposedVoxel>> GpuMap::exposed(std::uint64_t ticket, const ExposureTask& task) {
-  SACCADE_CHECK(impl_->bricks.check());
-  return impl_->surface.exposed(ticket, task);
+  if (const Status there = impl_->noted(impl_->bricks.check()); !there.ok()) return there.error();
+  return impl_->noted(impl_->surface.exposed(ticket, task));
 }
 
 Result<std::vector<std::uint8_t>> GpuMap::in_sight(std::uint64_t ticket, std::span<const LineOfSight> lines,
                                                    std::span<const Eigen::Vector3d> cameras_m, double through_m) {
-  SACCADE_CHECK(impl_->bricks.check());
-  return impl_->surface.in_sight(ticket, lines, cameras_m, through_m);
+  if (const Status there = impl_->noted(impl_->bricks.check()); !there.ok()) return there.error();
+  return impl_->noted(impl_->surface.in_sight(ticket, lines, cameras_m, through_m));
 }
+
+std::optional<Error> GpuMap::take_problem() { return std::exchange(impl_->problem, std::nullopt); }
 
 }  // namespace saccade

@@ -3,6 +3,7 @@
 // GpuMap: a TSDF map in the memory of a GPU, which fuses depth images and evaluates views there.
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "saccade/core/executor.hpp"
@@ -49,8 +50,9 @@ class GpuMap final : public SurfaceDevice {
 
   [[nodiscard]] const TsdfConfig& config() const;
 
-  /// Fuses one depth image, as TsdfMap::integrate does. The statistics count updated bricks and valid pixels alone.
-  /// O(bricks in the frustum).
+  /// Fuses one depth image, as TsdfMap::integrate does. Of the statistics, valid_pixels equals that of the CPU;
+  /// bricks_updated counts the bricks of which a voxel was observed, also those that are free as a whole; bricks_free
+  /// and bricks_saturated are 0, since the GPU does not tell them apart. O(bricks in the frustum).
   [[nodiscard]] Result<FusionStats> integrate(const PinholeCamera& camera, const DepthImage& depth,
                                               const Pose& T_world_camera);
 
@@ -79,8 +81,10 @@ class GpuMap final : public SurfaceDevice {
   [[nodiscard]] Result<std::vector<std::uint8_t>> in_sight(std::uint64_t ticket, std::span<const LineOfSight> lines,
                                                            std::span<const Eigen::Vector3d> cameras_m,
                                                            double through_m) override;
+  [[nodiscard]] std::optional<Error> take_problem() override;
 
-  /// Tells whether the GPU's memory did not suffice for the map, so that it holds a part.
+  /// Tells whether the GPU's memory did not suffice for the map, so that it holds a part. A smaller map that is
+  /// assigned is tried whole again.
   [[nodiscard]] bool is_paged() const;
   /// Tells whether the GPU is gone for good: every call answers unavailable from now on.
   [[nodiscard]] bool is_lost() const;

@@ -21,13 +21,24 @@ Result<HybridMap> HybridMap::create(const TsdfConfig& config, std::optional<GpuM
   if (gpu && !same_map(gpu->config(), config)) {
     return Error{Errc::invalid_argument, "the map on the GPU has another configuration", "cuda"};
   }
+  if (gpu) {
+    SACCADE_TRY(TsdfSnapshot content, gpu->snapshot());
+    if (!content.grid.empty()) map = TsdfMap{TsdfSnapshot{config, std::move(content.grid)}};
+  }
   return HybridMap{std::move(map), std::move(gpu)};
+}
+
+void HybridMap::leave_if_lost() {
+  if (const std::optional<Error> problem = gpu_->take_problem()) problem_ = problem->message;
+  if (!gpu_->is_lost()) return;
+  if (problem_.empty()) problem_ = "the GPU was lost";
+  gpu_.reset();
 }
 
 Status HybridMap::catch_up(const Executor& executor) {
   if (!gpu_) return {};
   if (frames_.empty()) {
-    if (gpu_->is_lost()) gpu_.reset();
+    leave_if_lost();
     return {};
   }
   if (Result<TsdfSnapshot> content = gpu_->snapshot(); content.ok()) {
@@ -92,7 +103,9 @@ Result<GainResult> HybridMap::evaluate_views(const Region& region, std::span<con
 
 Result<ExpectedSurface> HybridMap::expected_surface(const ExpectedSurfaceConfig& config, const Executor& executor) {
   SACCADE_CHECK(catch_up(executor));
-  return saccade::expected_surface(cpu_.content(), config, executor, gpu());
+  Result<ExpectedSurface> surface = saccade::expected_surface(cpu_.content(), config, executor, gpu());
+  if (gpu_) leave_if_lost();
+  return surface;
 }
 
 Result<TsdfSnapshot> HybridMap::snapshot(const Executor& executor) {

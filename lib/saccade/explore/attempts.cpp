@@ -7,10 +7,17 @@
 namespace saccade {
 namespace {
 
-bool is_same(const Pose& a, const Pose& b) {
-  constexpr double kSame{1e-9};
-  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kSame;
+constexpr double kSame{1e-9};
+
+bool is_same(const Pose& a, const Pose& b) { return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kSame; }
+
+/// Tells whether two poses differ by a roll at most: one place, one optical axis.
+bool is_roll_of(const Pose& a, const Pose& b) {
+  return (a.matrix() - b.matrix()).rightCols<2>().cwiseAbs().maxCoeff() <= kSame;
 }
+
+/// Tells whether all candidates that the robot can take were evaluated, as when gains choose. Chance evaluates a few.
+bool was_chosen_by_gain(const ViewRecord& view) { return view.evaluated + view.refused.total() >= view.candidates; }
 
 }  // namespace
 
@@ -19,8 +26,11 @@ Attempts::Attempts(std::span<const ViewRecord> views) {
 }
 
 void Attempts::add_view(const ViewRecord& view) {
-  attempts_.push_back({view.region, view.T_world_camera, Attempt::Outcome::taken});
-  if (view.gain_predicted > 0.0 && std::isfinite(view.gain_observed)) {
+  const bool is_checked = view.gain_predicted > 0.0 && std::isfinite(view.gain_observed);
+  // Planners that make no promises leave every view unchecked, and may want other rolls.
+  const bool all_rolls = view.gain_predicted > 0.0 && !is_checked && !checked_.empty() && was_chosen_by_gain(view);
+  attempts_.push_back({view.region, view.T_world_camera, Attempt::Outcome::taken, all_rolls});
+  if (is_checked) {
     checked_.push_back({view.T_world_camera, view.gain_observed / view.gain_predicted});
   }
   refusals_.clear();
@@ -39,7 +49,8 @@ void Attempts::add_skipped(std::size_t region, const Pose& T_world_camera) {
 
 bool Attempts::contains(std::size_t region, const Pose& T_world_camera) const {
   return std::any_of(attempts_.begin(), attempts_.end(), [&](const Attempt& attempt) {
-    return attempt.region == region && is_same(attempt.T_world_camera, T_world_camera);
+    return attempt.region == region && (is_same(attempt.T_world_camera, T_world_camera) ||
+                                        (attempt.all_rolls && is_roll_of(attempt.T_world_camera, T_world_camera)));
   });
 }
 

@@ -11,7 +11,11 @@
 namespace saccade {
 
 /// Poses by region. Poses that differ by rounding are equal, so a pose is recognised after it was written to a file and
-/// read again.
+/// read again. They are the poses that were asked for, wherever a real robot arrived.
+///
+/// The promise of a view is checked by fewer rays than its gain counts. Where none of them finds what is promised,
+/// Credit has nothing to go by, and every roll of the camera would promise the same again. Such a view stands for all
+/// rolls.
 class Attempts {
  public:
   Attempts() = default;
@@ -24,7 +28,8 @@ class Attempts {
   /// Records a pose that the caller does not want.
   void add_skipped(std::size_t region, const Pose& T_world_camera);
 
-  /// Tells whether the camera took the pose, or tried to, for this region.
+  /// Tells whether the camera took the pose, or tried to, for this region; or took another roll of it whose promise
+  /// could not be checked.
   [[nodiscard]] bool contains(std::size_t region, const Pose& T_world_camera) const;
   /// Tells whether the robot could not take it.
   [[nodiscard]] bool was_refused(std::size_t region, const Pose& T_world_camera) const;
@@ -40,6 +45,7 @@ class Attempts {
     std::size_t region;
     Pose T_world_camera;
     enum class Outcome : std::uint8_t { taken, refused, skipped } outcome;
+    bool all_rolls{false};  ///< the promise could not be checked
   };
   std::vector<Attempt> attempts_;
   std::vector<CheckedView> checked_;

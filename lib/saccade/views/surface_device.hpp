@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,6 +43,9 @@ class SurfaceDevice {
                                                                    std::span<const LineOfSight> lines,
                                                                    std::span<const Eigen::Vector3d> cameras_m,
                                                                    double through_m) = 0;
+  /// Returns the last error after which the CPU had to go on, and forgets it; nullopt: there was none since the last
+  /// call. A device that is lost says so once.
+  [[nodiscard]] virtual std::optional<Error> take_problem() { return std::nullopt; }
 };
 
 }  // namespace saccade

@@ -233,7 +233,9 @@ TEST(BuiltinRobots, TheComauIsThatOfItsRows) {
     ASSERT_LT(test::miss(T_world_flange, T_world_base * T_base_flange), 1e-14);
   }
   EXPECT_EQ(InverseKinematics::create(arm)->method(), IkMethod::closed_form);
-  EXPECT_FALSE(find_robot("hal"));
+  EXPECT_NE(find_robot("hal").error().message.find("no such robot"), std::string::npos);
+  for (const char* file : {"hal.urdf", "hal.XACRO", "arms/hal", "./hal"})
+    EXPECT_EQ(find_robot(file).error().message, "there is no such file") << file;
 }
 
 TEST(BuiltinRobots, TheComauReachesTheFirstLookOfEveryScene) {

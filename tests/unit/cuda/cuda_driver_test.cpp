@@ -33,11 +33,22 @@ struct Fake {
   int released{0};
   int copies{0};
   int launched{0};
+  int loaded_modules{0};
+  int allocated{0};
+  bool broken{false};       // the context, for all who share it: a kernel has gone wrong there
+  int outside_of_turns{0};  // calls while no one had turned to the context, or it was gone
   std::set<std::string> found;
   std::set<std::string> asked;   // for its registers
   std::set<std::string> loaded;  // by cuFuncLoad
 };
 Fake fake;
+
+/// As the driver's calls in the context answer: it is the current one, and not broken.
+int in_context(int result) {
+  fake.outside_of_turns += fake.pushed == fake.popped || fake.retained == fake.released ? 1 : 0;
+  fake.broken = fake.broken || result == kIllegalAddress;
+  return fake.broken ? kIllegalAddress : result;
+}
 
 /// Names stand for functions.
 FunctionHandle handle_of(const std::string& name) {
@@ -63,7 +74,7 @@ Driver made_up_driver(bool with_load) {
     ++fake.retained;
     return *context = nullptr, 0;
   };
-  d.cuDevicePrimaryCtxRelease_v2 = [](DeviceHandle) { return ++fake.released, 0; };
+  d.cuDevicePrimaryCtxRelease_v2 = [](DeviceHandle) { return ++fake.released, 0; };  // the last one ends the context
   d.cuCtxPushCurrent_v2 = [](ContextHandle) {
     fake.pushed += fake.push_result == 0 ? 1 : 0;
     return fake.push_result;
@@ -73,9 +84,10 @@ Driver made_up_driver(bool with_load) {
     *module = fake.load_result == 0 ? reinterpret_cast<ModuleHandle>(&fake) : nullptr;
     if (options == 2 && names[0] == 5 && names[1] == 6 && fake.load_result != 0)
       std::snprintf(static_cast<char*>(values[0]), reinterpret_cast<std::size_t>(values[1]), "line 7: no such thing");
-    return fake.load_result;
+    fake.loaded_modules += fake.load_result == 0 ? 1 : 0;
+    return in_context(fake.load_result);
   };
-  d.cuModuleUnload = [](ModuleHandle) { return 0; };
+  d.cuModuleUnload = [](ModuleHandle) { return --fake.loaded_modules, in_context(0); };
   d.cuModuleGetFunction = [](FunctionHandle* function, ModuleHandle, const char* name) {
     return *function = handle_of(name), 0;
   };
@@ -85,14 +97,22 @@ Driver made_up_driver(bool with_load) {
   };
   if (with_load) d.cuFuncLoad = [](FunctionHandle function) { return fake.loaded.insert(name_behind(function)), 0; };
   d.cuMemAlloc_v2 = [](DeviceAddress* address, std::size_t bytes) {
-    if (fake.allocate_result == 0) *address = reinterpret_cast<DeviceAddress>(std::malloc(bytes));
-    return fake.allocate_result;
+    const int result = in_context(fake.allocate_result);
+    if (result != 0) return result;
+    ++fake.allocated;
+    *address = reinterpret_cast<DeviceAddress>(std::malloc(bytes));
+    return 0;
   };
-  d.cuMemFree_v2 = [](DeviceAddress address) { return std::free(reinterpret_cast<void*>(address)), 0; };
-  d.cuMemcpyHtoD_v2 = [](DeviceAddress, const void*, std::size_t) { return ++fake.copies, fake.copy_result; };
+  d.cuMemFree_v2 = [](DeviceAddress address) {
+    --fake.allocated;
+    return std::free(reinterpret_cast<void*>(address)), in_context(0);
+  };
+  d.cuMemcpyHtoD_v2 = [](DeviceAddress, const void*, std::size_t) {
+    return ++fake.copies, in_context(fake.copy_result);
+  };
   d.cuLaunchKernel = [](FunctionHandle, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
-                        StreamHandle, void**, void**) { return ++fake.launched, 0; };
-  d.cuCtxSynchronize = [] { return 0; };
+                        StreamHandle, void**, void**) { return ++fake.launched, in_context(0); };
+  d.cuCtxSynchronize = [] { return in_context(0); };
   d.cuGetErrorString = [](DriverResult, const char** text) { return *text = "so it is", 0; };
   return d;
 }
@@ -106,7 +126,8 @@ std::set<std::string> all_kernels() {
 TEST(CudaDriver, ErrorsAreToldApart) {
   EXPECT_EQ(fault_of(0), DriverFault::none);
   EXPECT_EQ(fault_of(kOutOfMemory), DriverFault::no_room);
-  for (const int lost : {4, 46, 214, 219, 220, 700, 701, 702, 704, 709, 710, 714, 715, 716, 717, 718, 719, 721, 999}) {
+  for (const int lost :
+       {4, 46, 214, 219, 220, 226, 700, 701, 702, 704, 709, 710, 714, 715, 716, 717, 718, 719, 721, 810, 911, 999}) {
     EXPECT_EQ(fault_of(lost), DriverFault::lost) << lost;
   }
   for (const int other : {1, 3, 100, 101, 200, 218, 400, 500, 703, 720, 801}) {
@@ -157,6 +178,87 @@ TEST(CudaDriver, ALostGpuIsNotAskedAgain) {
   EXPECT_FALSE(compute->allocate(1).ok());
   EXPECT_FALSE(compute->finish().ok());
   EXPECT_EQ(fake.copies, 1);
+}
+
+/// Every compute retains the one context that a program has on a GPU.
+TEST(CudaDriver, TwoAtOnceShareAContext) {
+  const Driver driver = made_up_driver(true);
+  auto first = open_by(driver, "some text").value();
+  auto second = open_by(driver, "some text").value();
+  EXPECT_EQ(fake.retained, 2);
+  EXPECT_EQ(fake.loaded_modules, 2);
+  {
+    Buffer<int> of_first{*first};
+    Buffer<int> of_second{*second};
+    for (std::size_t size = 1; size < 4; ++size) {  // by turns, each with memory of its own
+      ASSERT_TRUE(of_first.reserve(size).ok());
+      ASSERT_TRUE(of_second.reserve(size).ok());
+      EXPECT_NE(of_first.data(), of_second.data());
+      EXPECT_EQ(fake.allocated, 2);
+      EXPECT_TRUE(first->launch(kernel_entry<SumChunks>(), 1, nullptr).ok());
+      EXPECT_TRUE(second->copy_in(of_second.data(), nullptr, 0).ok());
+      EXPECT_TRUE(first->finish().ok());
+      EXPECT_TRUE(second->launch(kernel_entry<SumLanes>(), 1, nullptr).ok());
+      EXPECT_EQ(fake.pushed, fake.popped);
+    }
+  }
+  EXPECT_EQ(fake.launched, 6);
+  EXPECT_EQ(fake.allocated, 0);
+  first.reset();
+  EXPECT_EQ(fake.released, 1);
+  EXPECT_EQ(fake.loaded_modules, 1);
+  const auto memory = second->allocate(1);
+  ASSERT_TRUE(memory.ok()) << "the other one holds the context";
+  second->release(memory.value());
+  second.reset();
+  EXPECT_EQ(fake.released, 2);
+  EXPECT_EQ(fake.loaded_modules, 0);
+  EXPECT_EQ(fake.pushed, fake.popped);
+  EXPECT_EQ(fake.outside_of_turns, 0);
+}
+
+TEST(CudaDriver, ALossThatTwoShareIsToldToEach) {
+  const Driver driver = made_up_driver(true);
+  auto first = open_by(driver, "some text").value();
+  auto second = open_by(driver, "some text").value();
+  void* const of_second = second->allocate(3).value();
+  fake.copy_result = kIllegalAddress;
+  EXPECT_FALSE(first->copy_in(nullptr, nullptr, 0).ok());
+  fake.copy_result = 0;
+  EXPECT_TRUE(first->is_lost());
+  EXPECT_FALSE(second->is_lost()) << "the driver has not been asked";
+  const Status told = second->finish();
+  EXPECT_EQ(told.error().code, Errc::unavailable);
+  EXPECT_NE(told.error().message.find("so it is"), std::string::npos) << "by the driver: " << told.error().message;
+  EXPECT_TRUE(second->is_lost());
+  EXPECT_NE(second->finish().error().message.find("lost before"), std::string::npos);
+  EXPECT_FALSE(second->allocate(1).ok());
+  first.reset();
+  second->release(of_second);
+  second.reset();
+  EXPECT_EQ(fake.copies, 1);
+  EXPECT_EQ(fake.allocated, 0);
+  EXPECT_EQ(fake.loaded_modules, 0);
+  EXPECT_EQ(fake.retained, fake.released);
+  EXPECT_EQ(fake.pushed, fake.popped);
+  EXPECT_EQ(fake.outside_of_turns, 0);
+}
+
+/// A fault of one compute alone leaves the other as it was.
+TEST(CudaDriver, ALossOfOneIsNotTheOthers) {
+  const Driver driver = made_up_driver(true);
+  const auto first = open_by(driver, "some text").value();
+  const auto second = open_by(driver, "some text").value();
+  fake.push_result = kIllegalAddress;
+  EXPECT_FALSE(first->finish().ok());
+  fake.push_result = 0;
+  EXPECT_TRUE(first->is_lost());
+  EXPECT_TRUE(second->finish().ok());
+  EXPECT_TRUE(second->copy_in(nullptr, nullptr, 0).ok());
+  EXPECT_FALSE(second->is_lost());
+  EXPECT_FALSE(first->finish().ok());
+  EXPECT_EQ(fake.pushed, fake.popped);
+  EXPECT_EQ(fake.outside_of_turns, 0);
 }
 
 TEST(CudaDriver, AContextThatCannotBeTurnedToIsAnErrorOfTheCall) {

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <optional>
 
 #include "failing_compute.hpp"
 #include "saccade/cuda/hybrid_map.hpp"
 #include "saccade/cuda/internal/gpu_map_impl.hpp"
+#include "saccade/views/internal/state_volume.hpp"
 
 namespace saccade {
 namespace {
@@ -55,7 +57,7 @@ bool same_depth(const SurfaceView& a, const SurfaceView& b) {
 }
 
 TEST(DeviceFaults, ALostGpuIsLeftThoughNothingWasFusedSince) {
-  for (int call = 0; call < 3; ++call) {
+  for (int call = 0; call < 4; ++call) {
     SCOPED_TRACE(call);
     Maps maps;
     HybridMap map = HybridMap::create(small_voxels(), std::move(maps.gpu)).value();
@@ -70,6 +72,9 @@ TEST(DeviceFaults, ALostGpuIsLeftThoughNothingWasFusedSince) {
     } else if (call == 1) {
       EXPECT_EQ(map.evaluate_views(maps.region, maps.views, maps.gain, {}).value().gains,
                 evaluate_views(maps.cpu.content(), maps.region, maps.views, maps.gain, {}).value().gains);
+    } else if (call == 2) {
+      EXPECT_EQ(map.expected_surface({}, {}).value().seen_cm2,
+                expected_surface(maps.cpu.content(), {}, {}).value().seen_cm2);
     } else {
       ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
       ASSERT_TRUE(map.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
@@ -77,6 +82,40 @@ TEST(DeviceFaults, ALostGpuIsLeftThoughNothingWasFusedSince) {
     EXPECT_FALSE(map.on_gpu());
     EXPECT_NE(map.gpu_problem().find("lost"), std::string::npos) << map.gpu_problem();
     EXPECT_TRUE(map.snapshot({}).value().grid == maps.cpu.content().grid);
+  }
+}
+
+TEST(DeviceFaults, AFullGpuIsSaidThoughTheCpuCompletesTheSurface) {
+  Maps maps;
+  HybridMap map = HybridMap::create(small_voxels(), std::move(maps.gpu)).value();
+  ASSERT_TRUE(map.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+  ASSERT_TRUE(map.expected_surface({}, {}).ok());
+  EXPECT_EQ(map.gpu_problem(), "");
+  maps.faults->kernel_without_room = "saccade_read_states";
+  maps.faults->times = 1000;
+  const ExpectedSurface surface = map.expected_surface({}, {}).value();
+  EXPECT_EQ(surface.volume->ticket(), 0U) << "the CPU did the work";
+  EXPECT_GT(surface.volume->size(), 0U);
+  EXPECT_EQ(map.gpu_problem(), "no room for a kernel");
+  EXPECT_TRUE(map.on_gpu());
+}
+
+TEST(DeviceFaults, ASurfaceDeviceSaysOnceWhyTheCpuWentOn) {
+  Maps maps;
+  ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+  SurfaceDevice& device = maps.gpu;
+  const ExpectedSurface done = expected_surface(maps.cpu.content(), {}, {}, &device).value();
+  EXPECT_NE(done.volume->ticket(), 0U);
+  EXPECT_FALSE(device.take_problem().has_value());
+  EXPECT_FALSE(device.in_sight(done.volume->ticket() + 1, {}, {}, 0.1).ok());
+  EXPECT_FALSE(device.take_problem().has_value()) << "the caller's mistake";
+  maps.faults->lost = true;
+  for (const bool first : {true, false}) {
+    const ExpectedSurface surface = expected_surface(maps.cpu.content(), {}, {}, &device).value();
+    EXPECT_EQ(surface.volume->ticket(), 0U);
+    EXPECT_EQ(surface.seen_cm2, done.seen_cm2);
+    const std::optional<Error> problem = device.take_problem();
+    EXPECT_EQ(problem ? problem->message : "", first ? "the device is lost" : "") << "the cause, not that it was lost";
   }
 }
 
@@ -115,20 +154,130 @@ TEST(DeviceFaults, AKernelWithoutRoomIsTriedAgainInPages) {
     SCOPED_TRACE(kernel);
     Maps maps;
     ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
-    ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
     ASSERT_TRUE(maps.gpu.integrate(kCamera, waves(), maps.T_world_camera).ok());
-    maps.faults->kernel_without_room = kernel;
-    maps.faults->times = 1;
-    ASSERT_TRUE(maps.gpu.integrate(kCamera, waves(), maps.T_world_camera).ok());
-    EXPECT_TRUE(same_depth(maps.gpu.raycast(kCamera, maps.T_world_camera).value(),
-                           raycast(maps.cpu.content(), kCamera, maps.T_world_camera, {}).value()));
-    EXPECT_EQ(maps.gpu.evaluate_views(maps.region, maps.views, maps.gain, {}).value().gains,
-              evaluate_views(maps.cpu.content(), maps.region, maps.views, maps.gain, {}).value().gains);
-    EXPECT_EQ(maps.faults->times, 0);
-    EXPECT_TRUE(maps.gpu.is_paged());
-    EXPECT_FALSE(maps.gpu.is_lost());
-    EXPECT_TRUE(maps.gpu.snapshot().value().grid == maps.cpu.content().grid);
+    // Once: the room of other work's buffers suffices. Twice: that of the bricks elsewhere, too.
+    for (const int times : {1, 2}) {
+      maps.faults->kernel_without_room = kernel;
+      maps.faults->times = times;
+      ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+      ASSERT_TRUE(maps.gpu.integrate(kCamera, waves(), maps.T_world_camera).ok());
+      EXPECT_TRUE(same_depth(maps.gpu.raycast(kCamera, maps.T_world_camera).value(),
+                             raycast(maps.cpu.content(), kCamera, maps.T_world_camera, {}).value()));
+      EXPECT_EQ(maps.gpu.evaluate_views(maps.region, maps.views, maps.gain, {}).value().gains,
+                evaluate_views(maps.cpu.content(), maps.region, maps.views, maps.gain, {}).value().gains);
+      EXPECT_EQ(maps.faults->times, 0);
+      EXPECT_EQ(maps.gpu.is_paged(), times == 2);
+      EXPECT_FALSE(maps.gpu.is_lost());
+      EXPECT_TRUE(maps.gpu.snapshot().value().grid == maps.cpu.content().grid);
+    }
   }
+}
+
+/// A device with room for the map and one work's buffers keeps the map, whatever work it does in turn.
+TEST(DeviceFaults, BuffersOfOtherWorkGoBeforeTheMapDoes) {
+  Maps maps;
+  ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+  const TsdfSnapshot content = maps.cpu.snapshot();
+  const PinholeCamera fine{320, 240, 300.0, 300.0, 159.5, 119.5, 0.2, 1.0};  // 1.2 MB of results
+  const IndexBox box = IndexBox::cube({-50, -50, 60}, 100);                  // 1 MB of states
+  std::vector<VoxelState> states(static_cast<std::size_t>(box.count()));
+  std::size_t memory{1'000'000};
+  for (;; memory += memory / 20) {
+    ASSERT_LT(memory, 50'000'000U);
+    GpuMap alone = GpuMap::create_emulated(small_voxels(), {}, memory).value();
+    ASSERT_TRUE(alone.follow(content, {}).ok());
+    if (alone.is_paged()) continue;
+    if (alone.raycast(fine, maps.T_world_camera).ok() && !alone.is_paged()) break;
+  }
+  GpuMap gpu = GpuMap::create_emulated(small_voxels(), {}, memory).value();
+  ASSERT_TRUE(gpu.follow(content, {}).ok());
+  const SurfaceView wanted = raycast(content, fine, maps.T_world_camera, {}).value();
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto ticket = gpu.read_states(box, states);
+    ASSERT_TRUE(ticket.ok());
+    EXPECT_EQ(ticket.value(), static_cast<std::uint64_t>(turn) + 1) << "no ticket is given twice";
+    EXPECT_TRUE(same_depth(gpu.raycast(fine, maps.T_world_camera).value(), wanted));
+    EXPECT_FALSE(gpu.is_paged());
+    EXPECT_EQ(gpu.in_sight(ticket.value(), {}, {}, 0.1).error().code, Errc::invalid_argument) << "its states are gone";
+  }
+}
+
+TEST(DeviceFaults, ASmallerMapIsTriedWholeAgain) {
+  Maps maps;
+  ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+  int paged{0};
+  for (std::size_t memory = 100'000; memory < 100'000'000; memory *= 2) {
+    SCOPED_TRACE(memory);
+    GpuMap gpu = GpuMap::create_emulated(small_voxels(), {}, memory).value();
+    ASSERT_TRUE(gpu.follow(maps.cpu.content(), {}).ok());
+    if (!gpu.is_paged()) break;
+    ++paged;
+    ASSERT_TRUE(gpu.follow(maps.cpu.content(), {}).ok());
+    EXPECT_TRUE(gpu.is_paged()) << "it is not smaller";
+    ASSERT_TRUE(gpu.follow({small_voxels(), {}}, {}).ok());
+    EXPECT_FALSE(gpu.is_paged());
+    EXPECT_TRUE(gpu.snapshot().value().grid.empty());
+    ASSERT_TRUE(gpu.follow(maps.cpu.content(), {}).ok());
+    EXPECT_TRUE(gpu.is_paged()) << "there is no more room than before";
+    EXPECT_TRUE(gpu.snapshot().value().grid == maps.cpu.content().grid);
+  }
+  EXPECT_GT(paged, 1);
+}
+
+/// Two places side by side are looked at in turn, on a device with room for both, but not for others far away.
+TEST(DeviceFaults, PagesThatTakeTurnsStayTogether) {
+  Maps maps;
+  std::vector<Pose> poses;
+  for (const double x : {0.0, 0.8, 12.0, 24.0}) {
+    poses.push_back(Pose::Identity());
+    poses.back().translation().x() = x;
+    ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), poses.back(), {}).ok());
+  }
+  constexpr std::uint64_t kPictures{4000};  // bytes that the calls themselves send, without bricks
+  int settled{0};
+  for (std::size_t memory = 500'000; memory < 100'000'000; memory += memory / 4) {
+    SCOPED_TRACE(memory);
+    GpuMap gpu = GpuMap::create_emulated(small_voxels(), {}, memory).value();
+    ASSERT_TRUE(gpu.follow(maps.cpu.content(), {}).ok());
+    if (!gpu.is_paged()) break;
+    std::uint64_t sent{0};
+    int done{0};
+    for (int turn = 0; turn < 4; ++turn) {
+      sent = gpu.traffic().bytes_sent;
+      for (int place = 0; place < 2; ++place) {
+        const Pose& pose = poses[static_cast<std::size_t>(place)];
+        const auto seen = gpu.raycast(kCamera, pose);
+        if (!seen.ok()) continue;
+        EXPECT_TRUE(same_depth(seen.value(), raycast(maps.cpu.content(), kCamera, pose, {}).value()));
+        ++done;
+      }
+    }
+    settled += done == 8 && gpu.traffic().bytes_sent - sent < kPictures ? 1 : 0;
+  }
+  EXPECT_GT(settled, 0);
+}
+
+TEST(DeviceFaults, AMapOnTheGpuIsTakenOver) {
+  Maps maps;
+  ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+  ASSERT_TRUE(maps.gpu.integrate(kCamera, waves(), maps.T_world_camera).ok());
+  HybridMap map = HybridMap::create(small_voxels(), std::move(maps.gpu)).value();
+  EXPECT_TRUE(map.snapshot({}).value().grid == maps.cpu.content().grid);
+  ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+  ASSERT_TRUE(map.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
+  maps.faults->lost = true;  // what was there at first is not among the frames that are fused again
+  EXPECT_TRUE(map.snapshot({}).value().grid == maps.cpu.content().grid);
+  EXPECT_FALSE(map.on_gpu());
+}
+
+/// The statistics of both back ends agree in the pixels alone, as gpu_map.hpp says.
+TEST(DeviceFaults, StatisticsCountBricksByBackEnd) {
+  Maps maps;
+  const FusionStats on_cpu = maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).value();
+  const FusionStats on_gpu = maps.gpu.integrate(kCamera, waves(), maps.T_world_camera).value();
+  EXPECT_EQ(on_gpu.valid_pixels, on_cpu.valid_pixels);
+  EXPECT_GT(on_gpu.bricks_updated, 0U);
+  EXPECT_EQ(on_gpu.bricks_free + on_gpu.bricks_saturated, 0U);
 }
 
 /// Bricks that have a slot are not counted again: the room of the first image suffices for all that see the same.

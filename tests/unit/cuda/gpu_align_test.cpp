@@ -6,6 +6,8 @@
 
 #include <random>
 
+#include "ordered_device.hpp"
+#include "saccade/cuda/internal/gpu_alignment.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/internal/icp_kernels.hpp"
 #include "saccade/tracking/internal/pair_math.hpp"
@@ -31,8 +33,18 @@ PointImage points_at(const PinholeCamera& camera, const Pose& T_world_camera) {
   return to_points(render(things_on_a_table(), camera, T_world_camera, {}).value().depth, camera, {});
 }
 
+void expect_equal(const Result<IcpResult>& result, const IcpResult& expected) {
+  ASSERT_TRUE(result.ok()) << result.error().to_string();
+  EXPECT_EQ(result->T_model_camera.matrix(), expected.T_model_camera.matrix());
+  EXPECT_EQ(result->iterations, expected.iterations);
+  EXPECT_EQ(result->rmse_m, expected.rmse_m);
+  EXPECT_EQ(result->inlier_share, expected.inlier_share);
+  EXPECT_EQ(result->why, expected.why);
+}
+
 TEST(GpuAligner, AlignsToTheBit) {
-  GpuAligner aligner = GpuAligner::create_emulated(Executor::with_threads(2, test::kParallelBackend)).value();
+  const Executor two_workers = Executor::with_threads(2, test::kParallelBackend);
+  GpuAligner aligner = GpuAligner::create_emulated(two_workers).value();
   const Pose T_world_model = look_at({0.5, -0.4, 0.5}, {0.0, 0.0, 0.05}, Eigen::Vector3d::UnitZ());
   std::mt19937 random{7};
   std::uniform_real_distribution<double> small{-0.02, 0.02};
@@ -41,20 +53,18 @@ TEST(GpuAligner, AlignsToTheBit) {
     SCOPED_TRACE(width);
     const PinholeCamera camera = camera_of(width, height);
     const PointImage model = points_at(camera, T_world_model);
-    for (int i = 0; i < 4; ++i) {
+    for (std::uint32_t order = 0; order < 4; ++order) {
+      SCOPED_TRACE("order " + std::to_string(order));
       Pose moved = Pose::Identity();
       moved.linear() = Eigen::AngleAxisd{small(random), Eigen::Vector3d{1.0, small(random), 0.5}.normalized()}.matrix();
       moved.translation() = Eigen::Vector3d::NullaryExpr([&] { return small(random); });
       const PointImage measured = points_at(camera, T_world_model * moved);
       const IcpResult expected = align(measured, model, camera, Pose::Identity(), {});
-      const auto result = aligner.align(measured, model, camera, Pose::Identity());
-      ASSERT_TRUE(result.ok()) << result.error().to_string();
-      EXPECT_EQ(result->T_model_camera.matrix(), expected.T_model_camera.matrix());
-      EXPECT_EQ(result->iterations, expected.iterations);
-      EXPECT_EQ(result->rmse_m, expected.rmse_m);
-      EXPECT_EQ(result->inlier_share, expected.inlier_share);
-      EXPECT_EQ(result->why, expected.why);
-      converged += result->converged ? 1 : 0;
+      const auto device = test::ordered_device(two_workers, order);
+      internal::cuda::GpuAlignment in_order{*device};
+      expect_equal(in_order.align(measured, model, camera, Pose::Identity(), {}), expected);
+      expect_equal(aligner.align(measured, model, camera, Pose::Identity()), expected);
+      converged += expected.converged ? 1 : 0;
     }
   }
   EXPECT_GT(converged, 6);

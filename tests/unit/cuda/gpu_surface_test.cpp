@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <random>
 
+#include "ordered_device.hpp"
 #include "saccade/cuda/gpu_map.hpp"
 #include "saccade/views/expected_surface.hpp"
 #include "saccade/views/internal/state_volume.hpp"
@@ -78,9 +80,9 @@ void expect_equal(const ExpectedSurface& got, const ExpectedSurface& wanted) {
 TEST(GpuSurface, EqualsThatOfTheCpuOnTables) {
   std::size_t completed{0};
   std::size_t beside{0};
-  GpuMap gpu = GpuMap::create_emulated({}, a_pair_of_threads()).value();
   for (std::uint32_t seed = 1; seed <= kScenes; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
+    GpuMap gpu = test::ordered_map({}, a_pair_of_threads(), seed - 1);
     const TsdfSnapshot map = random_table(seed);
     ExpectedSurfaceConfig config;
     if (seed % 4 == 0) config.reach_m = 0.03;
@@ -101,7 +103,7 @@ TEST(GpuSurface, EqualsThatOfTheCpuOnRandomMaps) {
   for (std::uint32_t seed = 1; seed <= kRandomMaps; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     test::RandomMap random{seed};
-    GpuMap gpu = GpuMap::create_emulated(random.snapshot().config, a_pair_of_threads()).value();
+    GpuMap gpu = test::ordered_map(random.snapshot().config, a_pair_of_threads(), seed - 1);
     for (int step = 0; step < 4; ++step) {
       random.step();
       TsdfSnapshot map = random.snapshot();
@@ -176,7 +178,7 @@ void expect_equal(const RankedViews& got, const RankedViews& wanted) {
 
 TEST(GpuSurface, ViewsRankAndGainAsOnTheCpu) {
   int gained{0};
-  GpuMap gpu = GpuMap::create_emulated({}, a_pair_of_threads()).value();
+  GpuMap gpu = test::ordered_map({}, a_pair_of_threads(), 3);  // follows one map after the other
   for (std::uint32_t seed = 1; seed <= kScenes; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Choice choice{seed};
@@ -237,6 +239,10 @@ TEST(GpuSurface, TheCpuGoesOnWhereMemoryIsShort) {
   for (std::size_t memory = 1000; memory < 20'000'000; memory *= 3) {
     GpuMap gpu = GpuMap::create_emulated(choice.map.config, {}, memory).value();
     const ExpectedSurface got = expected_surface(choice.map, {}, {}, &gpu).value();
+    const std::optional<Error> problem = gpu.take_problem();
+    EXPECT_TRUE(got.volume->ticket() != 0 || problem.has_value()) << "it is told why";
+    EXPECT_TRUE(!problem.has_value() || problem->code == Errc::unavailable);
+    EXPECT_FALSE(gpu.take_problem().has_value());
     expect_equal(got, wanted);
     expect_equal(choice.best(&gpu, 0.1), views);
     (got.volume->ticket() == 0 ? failed : done) += 1;

@@ -169,6 +169,7 @@ TEST(HybridMap, PagesComeAndGoAsTheWorkMoves) {
     }
     EXPECT_TRUE(map.snapshot({}).value().grid == expected.content().grid);
     ASSERT_TRUE(map.on_gpu());
+    done_in_pages += map.gpu()->is_paged() && map.gpu_problem().empty() ? 1 : 0;
     // The host goes on with its own map, and the device follows.
     GpuMap& gpu = *map.gpu();
     for (const Pose& pose : poses) {
@@ -184,7 +185,6 @@ TEST(HybridMap, PagesComeAndGoAsTheWorkMoves) {
       EXPECT_EQ(std::memcmp(seen->depth.data(), wanted.depth.data(), wanted.depth.size() * sizeof(float)), 0);
       ++followed;
     }
-    done_in_pages += map.gpu()->is_paged() && map.gpu_problem().empty() ? 1 : 0;
     if (!map.gpu()->is_paged()) break;
   }
   EXPECT_GT(done_in_pages, 0);

@@ -72,7 +72,7 @@ class HostCompute final : public Compute {
   std::uint32_t order_;
 };
 
-/// Array in a device's memory; grows and never shrinks. The Compute must outlive it.
+/// Array in a device's memory; grows, and never shrinks but by free(). The Compute must outlive it.
 template <class T>
 class Buffer {
  public:
@@ -93,6 +93,8 @@ class Buffer {
 
   [[nodiscard]] T* data() const { return data_; }
   [[nodiscard]] std::size_t capacity() const { return capacity_; }
+  /// Gives the memory back.
+  void free() noexcept { const Buffer old{std::move(*this)}; }
   /// Makes room for `count` elements; keeps the first `keep` of them.
   [[nodiscard]] Status reserve(std::size_t count, std::size_t keep = 0) {
     if (count <= capacity_) return {};

@@ -87,6 +87,7 @@ DriverFault fault_of(DriverResult result) {
     case 214:                             // ECC_UNCORRECTABLE
     case 219:                             // INVALID_GRAPHICS_CONTEXT
     case 220:                             // NVLINK_UNCORRECTABLE
+    case 226:                             // CONTAINED
     case 700:                             // ILLEGAL_ADDRESS
     case 701:                             // LAUNCH_OUT_OF_RESOURCES: no kernel of ours asks for more than another time
     case 702:                             // LAUNCH_TIMEOUT
@@ -100,6 +101,8 @@ DriverFault fault_of(DriverResult result) {
     case 718:                             // INVALID_PC
     case 719:                             // LAUNCH_FAILED
     case 721:                             // TENSOR_MEMORY_LEAK
+    case 810:                             // MPS_CLIENT_TERMINATED
+    case 911:                             // EXTERNAL_DEVICE
     case 999: return DriverFault::lost;   // UNKNOWN
     default: return DriverFault::other;
   }

@@ -132,7 +132,7 @@ struct CountScoringRays {
   };
   static constexpr const char* kName{"saccade_count_scoring_rays"};
   static constexpr unsigned kThreads{kTileColumns * kTileRows};
-  static constexpr unsigned kBlocksPerUnit{10};  // 96 registers; one block more spills some
+  static constexpr unsigned kBlocksPerUnit{10};  // 88 registers at most; one block more spills some
   static constexpr int kPhases{3};
 
   /// Finds a tile's window from the host's hint; every window has a tile, so that it is near.

@@ -101,4 +101,13 @@ Result<FusionStats> GpuFusion::integrate(const TsdfConfig& config, const Pinhole
   return stats;
 }
 
+void GpuFusion::free_buffers() noexcept {
+  depths_m_.free();
+  ranges_m_.free();
+  tile_reach_.free();
+  tile_clear_.free();
+  counters_.free();
+  in_view_.free();
+}
+
 }  // namespace saccade::internal::cuda

@@ -29,6 +29,8 @@ class GpuFusion {
                                               const BringIn& bring_in = {});
   /// Tells whether the last frame failed after the kernels began to change bricks. Before, an error changes nothing.
   [[nodiscard]] bool failed_halfway() const { return began_; }
+  /// Gives the buffers back. Not while a frame is fused.
+  void free_buffers() noexcept;
 
  private:
   /// Numbers that the kernels of a frame count, in device memory.

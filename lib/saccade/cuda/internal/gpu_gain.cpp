@@ -196,4 +196,11 @@ Result<GainResult> GpuGain::count(const GainTask& task, BrickStore& bricks) {
   return result;
 }
 
+void GpuGain::free_buffers() noexcept {
+  windows_.free();
+  first_windows_.free();
+  coordinates_.free();
+  gains_.free();
+}
+
 }  // namespace saccade::internal::cuda

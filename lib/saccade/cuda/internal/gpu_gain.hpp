@@ -43,6 +43,7 @@ class GpuGain {
       : compute_{compute}, windows_{compute}, first_windows_{compute}, coordinates_{compute}, gains_{compute} {}
 
   [[nodiscard]] Result<GainResult> count(const GainTask& task, BrickStore& bricks);
+  void free_buffers() noexcept;
 
  private:
   Compute& compute_;

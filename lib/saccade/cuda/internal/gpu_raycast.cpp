@@ -59,4 +59,10 @@ Result<SurfaceView> GpuRaycast::cast(const TsdfConfig& config, const PinholeCame
   return view;
 }
 
+void GpuRaycast::free_buffers() noexcept {
+  coordinates_.free();
+  depths_m_.free();
+  normals_.free();
+}
+
 }  // namespace saccade::internal::cuda

@@ -16,6 +16,7 @@ class GpuRaycast {
 
   [[nodiscard]] Result<SurfaceView> cast(const TsdfConfig& config, const PinholeCamera& camera,
                                          const Pose& T_world_camera, BrickStore& bricks);
+  void free_buffers() noexcept;
 
  private:
   Compute& compute_;

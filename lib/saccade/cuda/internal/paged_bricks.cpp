@@ -42,9 +42,31 @@ Status PagedBricks::check() const {
   return Error{Errc::unavailable, "the GPU was lost, with what it had fused since the last snapshot", "cuda"};
 }
 
+PagedBricks::Load PagedBricks::load_of(std::span<const SectorBricks> known) {
+  Load load{0, 0.0};
+  IndexBox sectors;
+  for (const SectorBricks& some : known) {
+    load.bricks += static_cast<std::size_t>(some.bricks.count());
+    sectors = sectors.hull(IndexBox::cube(some.sector, 1));
+  }
+  if (!sectors.empty()) load.table = sectors.count() * kSectorBricks;
+  return load;
+}
+
 void PagedBricks::clear() {
   store_.reset();  // its memory first
   store_.emplace(compute_);
+}
+
+Status PagedBricks::send(const TsdfGrid& map, std::span<const SectorBricks> known) {
+  Status sent = store_->update(map, known);
+  if (!sent.ok() && is_no_room(sent.error()) && free_scratch_) {
+    clear();
+    free_scratch_();
+    sent = store_->update(map, known);
+  }
+  if (!sent.ok()) clear();
+  return sent;
 }
 
 Status PagedBricks::assign(const TsdfSnapshot& map, const Executor& executor) {
@@ -52,25 +74,36 @@ Status PagedBricks::assign(const TsdfSnapshot& map, const Executor& executor) {
   if (!map.grid.all_in_memory()) {
     return Error{Errc::unsupported, "a map with sectors out of memory cannot go to the GPU", "cuda"};
   }
-  if (map.config.voxel_size_m != host_.config.voxel_size_m) {
+  const bool other_voxels = map.config.voxel_size_m != host_.config.voxel_size_m;
+  const bool fits_now = paged_ && load_of(changed_sectors({}, map.grid, executor)).is_below(too_much_);
+  if (other_voxels || fits_now) {
     clear();
-    page_ = {};
+    paged_ = false;
+    page_ = evicted_ = {};
     host_.grid = {};
   }
+  if (other_voxels) too_much_ = {};
   SACCADE_TRY(const TsdfSnapshot before, pull());
   std::vector<SectorBricks> changes = changed_sectors(before.grid, map.grid, executor);
   if (paged_) keep_within(page_, changes);
   host_ = map;
-  const Status sent = store_->update(map.grid, changes);
-  if (sent.ok()) return sent;
-  if (!is_no_room(sent.error())) {
-    lose();
-    return sent;
+  Status sent = store_->update(map.grid, changes);
+  const auto lacks_room = [&] { return !sent.ok() && is_no_room(sent.error()); };
+  if (lacks_room() && !paged_) {
+    const std::vector<SectorBricks> all = changed_sectors({}, map.grid, executor);
+    clear();
+    if (free_scratch_) free_scratch_();
+    sent = store_->update(map.grid, all);
+    if (lacks_room()) too_much_ = load_of(all);
   }
-  clear();
-  paged_ = true;
-  page_ = {};
-  return {};
+  if (lacks_room()) {
+    clear();
+    paged_ = true;
+    page_ = evicted_ = {};
+    return {};
+  }
+  if (!sent.ok()) lose();
+  return sent;
 }
 
 Result<TsdfSnapshot> PagedBricks::pull() {
@@ -84,19 +117,37 @@ Result<TsdfSnapshot> PagedBricks::pull() {
 
 Status PagedBricks::bring_in(const IndexBox& bricks) {
   SACCADE_CHECK(check());
-  return !paged_ || page_.contains(bricks) ? Status{} : page_to(bricks);
+  if (!paged_ || page_.contains(bricks)) return {};
+  if (evicted_.overlaps(bricks)) {
+    SACCADE_CHECK(pull());
+    const IndexBox both = page_.hull(bricks);
+    constexpr double kMostSectors{1 << 18};  // no table holds more
+    const IndexBox sectors = parents(both).intersection(host_.grid.sector_bounds());
+    const bool is_small = sectors.empty() || sectors.count() <= kMostSectors;
+    const Load load = is_small ? load_of(known_bricks(host_.grid, both)) : Load{};
+    if (load.is_below(too_much_)) {
+      const Status sent = page_to(both);
+      if (sent.ok() || !is_no_room(sent.error())) return sent;
+      too_much_ = load;
+    }
+  }
+  return page_to(bricks);
+}
+
+Status PagedBricks::note_too_much() {
+  SACCADE_CHECK(pull());
+  const Load load = load_of(paged_ ? known_bricks(host_.grid, page_) : changed_sectors({}, host_.grid, {}));
+  if (load.bricks > 0 && load.is_below(too_much_)) too_much_ = load;
+  return {};
 }
 
 Status PagedBricks::page_to(const IndexBox& bricks) {
-  if (const Result<TsdfSnapshot> whole = pull(); !whole.ok()) return whole.error();
+  SACCADE_CHECK(pull());
   clear();
   paged_ = true;
+  if (!page_.empty()) evicted_ = page_;
   page_ = {};
-  const Status sent = store_->update(host_.grid, known_bricks(host_.grid, bricks));
-  if (!sent.ok()) {
-    clear();
-    return sent;
-  }
+  SACCADE_CHECK(send(host_.grid, known_bricks(host_.grid, bricks)));
   page_ = bricks;
   return {};
 }

@@ -96,4 +96,17 @@ Result<std::vector<std::uint8_t>> SurfaceOnDevice::in_sight(std::uint64_t ticket
   return visible;
 }
 
+void SurfaceOnDevice::free_buffers() noexcept {
+  ticket_ = 0;
+  states_.free();
+  roles_.free();
+  squared_.free();
+  shares_.free();
+  count_.free();
+  exposed_.free();
+  lines_.free();
+  cameras_m_.free();
+  visible_.free();
+}
+
 }  // namespace saccade::internal::cuda

@@ -20,6 +20,8 @@ class SurfaceOnDevice {
   [[nodiscard]] Result<std::vector<std::uint8_t>> in_sight(std::uint64_t ticket, std::span<const LineOfSight> lines,
                                                            std::span<const Eigen::Vector3d> cameras_m,
                                                            double through_m);
+  /// Gives the buffers back, with the volume: its ticket is refused from now on.
+  void free_buffers() noexcept;
 
  private:
   [[nodiscard]] Status check(std::uint64_t ticket) const;

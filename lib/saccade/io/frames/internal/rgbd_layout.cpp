@@ -191,10 +191,12 @@ Error unknown_folder(const fs::path& folder) {
     message.append("; nearest is that of ").append(nearest->title).append(", which lacks ");
     message += joined(missing, " and ", [](const Patterns* mark) { return joined(*mark, " or ", shown); });
   }
+  fs::path inner_folder;
   for (const fs::path& inner : folders_in(folder)) {
     const RgbdLayoutRule* rule = recognise(inner);
     if (rule == nullptr) continue;
     message.append("; ").append(inner.filename().string()).append("/ in it is one of ").append(rule->title);
+    inner_folder = inner;
     break;
   }
   for (const PackedRecording& packed : kPackedRecordings) {
@@ -203,7 +205,9 @@ Error unknown_folder(const fs::path& folder) {
     message.append("; ").append(files.front().path.filename().string()).append(" ").append(packed.advice);
     break;
   }
-  return {Errc::not_found, message + "; docs/reference/formats.md lists the layouts", folder.string()};
+  message += "; docs/reference/formats.md lists the layouts";
+  if (!inner_folder.empty()) message += "; try " + inner_folder.string();
+  return {Errc::not_found, std::move(message), folder.string()};
 }
 
 /// Names how many files of a kind belong to no depth image.
