@@ -37,7 +37,7 @@ int column_width(const Items& items, const Name& name) {
 /// Writes nothing, and makes no folder.
 Result<Outcome> list_runs(const Comparison& comparison) {
   const std::filesystem::path& out = comparison.options().out;
-  std::vector<Error> unreadable;  // --status names them
+  std::vector<Error> unreadable;
   SACCADE_TRY(const CampaignIndex done, done_in(out, shard_files(out), &unreadable));
   const std::vector<PlannedRun> runs = comparison.plan(done);
   json rows = json::array();
@@ -54,6 +54,7 @@ Result<Outcome> list_runs(const Comparison& comparison) {
   }
   const auto found = std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; });
   text << runs.size() << " runs, " << found << " of them done\n";
+  for (const Error& error : unreadable) text << "unreadable: " << error.to_string() << '\n';
   return Outcome{.result = {{"runs", std::move(rows)}}, .text = text.str()};
 }
 
@@ -67,7 +68,7 @@ struct CampaignState {
 };
 
 /// Refuses to do again what slices have done.
-Status check_merged(const Comparison& comparison) {
+Status check_merged(const Comparison& comparison, ProgressBar& bar) {
   const std::filesystem::path& out = comparison.options().out;
   const std::vector<std::filesystem::path> shards = shard_files(out);
   if (shards.empty()) return {};
@@ -78,6 +79,7 @@ Status check_merged(const Comparison& comparison) {
   std::vector<Error> unreadable;
   SACCADE_TRY(const CampaignIndex merged, done_in(out, {}));
   SACCADE_TRY(const CampaignIndex all, done_in(out, shards, &unreadable));
+  for (const Error& error : unreadable) bar.warn("runs of a shard are not seen: " + error.to_string());
   const auto waiting = done_of(all) - done_of(merged);
   if (waiting == 0) return {};
   return Error{Errc::invalid_argument,
@@ -89,7 +91,7 @@ Status check_merged(const Comparison& comparison) {
 
 /// Runs what is missing, on this machine.
 Result<CampaignState> run_here(Context& context, const Comparison& comparison) {
-  SACCADE_CHECK(check_merged(comparison));
+  SACCADE_CHECK(check_merged(comparison, context.bar()));
   SACCADE_CHECK(context.open_folder());
   SACCADE_TRY(Campaign campaign, Campaign::open(*context.folder() / kCampaignFile));
   for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);

@@ -204,6 +204,10 @@ TEST(CompareSlices, ASliceOfAnotherMachineIsLostOnceItsRecordIsOld) {
   EXPECT_EQ(state(), "running");
   fs::last_write_time(shard / "shard.json", fs::file_time_type::clock::now() - std::chrono::minutes{20});
   EXPECT_EQ(state(), "lost");
+  std::ofstream{shard / "campaign.sqlite"} << std::string(1000, 'x');
+  const Outcome listed = run_program(compare(folder / "out", {"--seeds", "1", "--list"}));
+  EXPECT_NE(listed.out.find("unreadable: "), std::string::npos) << listed.out << listed.err;
+  EXPECT_NE(listed.out.find("0-of-1/campaign.sqlite"), std::string::npos) << listed.out;
 }
 
 TEST(CompareSlices, ASliceThatCannotBeginLeavesARecord) {
