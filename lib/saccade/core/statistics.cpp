@@ -2,6 +2,7 @@
 #include "saccade/core/statistics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -38,6 +39,31 @@ std::vector<double> ranks_of(std::span<const double> values) {
     for (std::size_t i = begin; i < end; ++i) ranks[order[i]] = 0.5 * static_cast<double>(begin + end + 1);
   }
   return ranks;
+}
+
+/// Degrees of freedom up to which the series of probability_within is summed for a quantile.
+constexpr std::size_t kMostSummed{1000};
+
+/// Returns where a predicate that holds up to a point ceases to hold.
+template <class Holds>
+double bisect(double low, double high, const Holds& holds) {
+  for (double middle = 0.5 * (low + high); low < middle && middle < high; middle = 0.5 * (low + high)) {
+    (holds(middle) ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Returns the quantile of Student's t for the quantile z of the normal distribution: the expansion of Abramowitz and
+/// Stegun, 26.7.5. What it leaves out falls with the fifth power of the degrees: 1e-12 at 1000 for z up to 3.9.
+double student_t_from_normal(double z, double degrees) {
+  const double square = z * z;
+  const std::array<double, 4> terms{
+      (square + 1.0) / 4.0, ((5.0 * square + 16.0) * square + 3.0) / 96.0,
+      (((3.0 * square + 19.0) * square + 17.0) * square - 15.0) / 384.0,
+      ((((79.0 * square + 776.0) * square + 1482.0) * square - 1920.0) * square - 945.0) / 92160.0};
+  double sum = 0.0;
+  for (std::size_t i = terms.size(); i-- > 0;) sum = (sum + terms[i]) / degrees;
+  return z * (1.0 + sum);
 }
 
 }  // namespace
@@ -107,12 +133,13 @@ double student_t_probability(double t, std::size_t degrees) {
 
 double student_t_quantile(double confidence, std::size_t degrees) {
   SACCADE_EXPECTS(confidence > 0.0 && confidence < 1.0 && degrees >= 1);
-  double low = 0.0;
-  double high = std::numbers::pi / 2.0;
-  for (double middle = 0.5 * high; low < middle && middle < high; middle = 0.5 * (low + high)) {
-    (probability_within(middle, degrees) < confidence ? low : high) = middle;
+  if (degrees > kMostSummed) {
+    const double z = bisect(0.0, 40.0, [&](double t) { return std::erf(t * std::numbers::sqrt2 / 2.0) < confidence; });
+    return student_t_from_normal(z, static_cast<double>(degrees));
   }
-  return std::sqrt(static_cast<double>(degrees)) * std::tan(0.5 * (low + high));
+  const double angle =
+      bisect(0.0, std::numbers::pi / 2.0, [&](double t) { return probability_within(t, degrees) < confidence; });
+  return std::sqrt(static_cast<double>(degrees)) * std::tan(angle);
 }
 
 }  // namespace saccade

@@ -59,7 +59,8 @@ struct MeanEstimate {
 /// degrees of freedom (Abramowitz and Stegun, 26.7.3 and 26.7.4). Expects t ≥ 0 and degrees ≥ 1. O(degrees).
 [[nodiscard]] double student_t_probability(double t, std::size_t degrees);
 
-/// Returns the t ≥ 0 for which student_t_probability equals `confidence`, by bisection. Exact to about 1e-12 of t for a
+/// Returns the t ≥ 0 for which student_t_probability equals `confidence`: by bisection up to 1000 degrees, from the
+/// normal distribution beyond (Abramowitz and Stegun, 26.7.5), in constant time. Exact to about 1e-12 of t for a
 /// confidence up to 0.9999. Expects a confidence within (0, 1) and degrees ≥ 1.
 [[nodiscard]] double student_t_quantile(double confidence, std::size_t degrees);
 

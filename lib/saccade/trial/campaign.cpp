@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/trial/campaign.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,12 +29,12 @@ INSERT INTO views (run, number, region, gain, gain_observed, T_world_camera, can
 VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?))sql"};
 
 constexpr const char* kSelectRuns{R"sql(
-SELECT id, scene, scene_hash, strategy, noise, seed, settings, stopped_because, seconds, program_version, finished_at,
+SELECT id, views, scene, scene_hash, strategy, noise, seed, settings, stopped_because, seconds, program_version, finished_at,
   scan_views, scan_refused, refused_at_end, initial_coverage, initial_unknown_left, initial_unknown_near_objects,
   initial_accuracy_m, initial_chamfer_m, initial_f_score
 FROM runs )sql"};
 
-// The columns that view_of reads.
+// The columns that read_view reads.
 constexpr const char* kReadViewColumns{R"sql(region, gain, gain_observed, candidates, evaluated, refused, frames,
   points_at_object, looks_at_object, path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms,
   reachability_ms, evaluation_ms, planning_ms, motion_ms, fusion_ms, coverage, unknown_left, unknown_near_objects,
@@ -41,6 +42,9 @@ constexpr const char* kReadViewColumns{R"sql(region, gain, gain_observed, candid
 
 constexpr const char* kWhereKey{
     "WHERE scene = ? AND scene_hash = ? AND strategy = ? AND noise = ? AND seed = ? AND settings = ?"};
+
+/// Views of a run that room is made for before they are read.
+constexpr std::int64_t kMostReserved{1000};
 
 std::int64_t whole(std::size_t count) { return static_cast<std::int64_t>(count); }
 
@@ -136,8 +140,7 @@ Status insert_views(const SqliteFile& file, const std::vector<ViewRecord>& views
 }
 
 /// Reads the next columns of the row, kReadViewColumns; the pose is not among them.
-Result<ViewRecord> view_of(SqliteStatement& row) {
-  ViewRecord view;
+Status read_view(SqliteStatement& row, ViewRecord& view) {
   view.region = static_cast<std::size_t>(row.integer());
   view.gain_predicted = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
   view.gain_observed = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
@@ -151,33 +154,33 @@ Result<ViewRecord> view_of(SqliteStatement& row) {
   view.motion_s = row.real();
   for (const Phase phase : kPhaseNames.values) view.times.add(phase, row.real());
   view.measures = measures_of(row);
-  return view;
+  return {};
 }
 
-/// Statement for views_of.
+/// Statement for read_views.
 Result<SqliteStatement> prepare_views(const SqliteFile& file) {
   return SqliteStatement::prepare(
       file, std::string{"SELECT T_world_camera, "} + kReadViewColumns + " FROM views WHERE run = ? ORDER BY number");
 }
 
-Result<std::vector<ViewRecord>> views_of(SqliteStatement& row, std::int64_t run) {
-  std::vector<ViewRecord> views;
+Status read_views(SqliteStatement& row, std::int64_t run, std::vector<ViewRecord>& views) {
   row.restart();
   row.bind(run);
   while (true) {
     SACCADE_TRY(const bool more, row.step());
-    if (!more) return views;
+    if (!more) return {};
     SACCADE_TRY(const nlohmann::json pose, parse_json(row.text()));
-    SACCADE_TRY(const Pose T_world_camera, pose_from_json(pose));
-    SACCADE_TRY(ViewRecord view, view_of(row));
-    view.T_world_camera = T_world_camera;
-    views.push_back(std::move(view));
+    ViewRecord& view = views.emplace_back();
+    SACCADE_TRY(view.T_world_camera, pose_from_json(pose));
+    SACCADE_CHECK(read_view(row, view));
   }
 }
 
 /// Reads the run of the statement's row, but for its views; the key also where the rest cannot be read.
 Status run_of(SqliteStatement& row, std::int64_t& id, CampaignEntry& entry) {
   id = row.integer();
+  // The views that follow count, not what is said of them; this only spares moving them.
+  entry.run.views.reserve(static_cast<std::size_t>(std::clamp<std::int64_t>(row.integer(), 0, kMostReserved)));
   entry.key.scene = row.text();
   entry.key.scene_hash = row.text();
   entry.key.strategy = row.text();
@@ -211,9 +214,9 @@ Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row, Sql
   std::int64_t id = 0;
   CampaignEntry entry;
   if (const Status read = run_of(row, id, entry); !read) return run_error(read.error(), entry.key, file.path());
-  Result<std::vector<ViewRecord>> taken = views_of(views, id);
-  if (!taken) return run_error(taken.error(), entry.key, file.path());
-  entry.run.views = std::move(*taken);
+  if (const Status read = read_views(views, id, entry.run.views); !read) {
+    return run_error(read.error(), entry.key, file.path());
+  }
   return entry;
 }
 
@@ -310,9 +313,8 @@ Result<std::vector<CampaignEntry>> Campaign::figures(const std::function<bool(co
     const bool chosen = wanted(entry.key);
     while (has_view && of_view <= id) {
       if (chosen && of_view == id) {
-        Result<ViewRecord> read = view_of(view);
+        const Status read = read_view(view, entry.run.views.emplace_back());
         if (!read) return run_error(read.error(), entry.key, path());
-        entry.run.views.push_back(std::move(*read));
       }
       SACCADE_TRY(has_view, view.step());
       of_view = has_view ? view.integer() : 0;

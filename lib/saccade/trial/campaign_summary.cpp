@@ -24,32 +24,49 @@ Runs runs_of(std::span<const CampaignEntry> runs, const CampaignGroup& group) {
   return chosen;
 }
 
-/// Returns the mean of `figure` over runs, or over scenes, without those that lack it. Calls it once for each run, in
-/// their order.
-template <class Figure>
-MeanEstimate mean_of(const Runs& runs, bool by_scene, const Figure& figure) {
-  std::vector<std::string_view> scenes;
-  std::vector<std::vector<double>> values;  // by scene
-  std::vector<double> means;
-  std::size_t scene = 0;  // runs of one scene follow each other, as a rule
-  for (const CampaignEntry* run : runs) {
-    const std::optional<double> value = figure(*run);
-    if (!value) continue;
-    if (!by_scene) {
-      means.push_back(*value);
-      continue;
+/// Values of a measure over runs, or over scenes with the mean of their runs.
+class Sample {
+ public:
+  explicit Sample(bool by_scene) : by_scene_{by_scene} {}
+
+  void add(const CampaignEntry& run, std::optional<double> value) {
+    if (!value) return;
+    if (!by_scene_) return values_.push_back(*value);
+    // Runs of one scene follow each other, as a rule.
+    if (scene_ >= scenes_.size() || scenes_[scene_].first != run.key.scene) {
+      scene_ = static_cast<std::size_t>(
+          std::find_if(scenes_.begin(), scenes_.end(), [&](const auto& of) { return of.first == run.key.scene; }) -
+          scenes_.begin());
     }
-    if (scene >= scenes.size() || scenes[scene] != run->key.scene) {
-      scene = static_cast<std::size_t>(std::find(scenes.begin(), scenes.end(), run->key.scene) - scenes.begin());
-    }
-    if (scene == scenes.size()) {
-      scenes.emplace_back(run->key.scene);
-      values.emplace_back();
-    }
-    values[scene].push_back(*value);
+    if (scene_ == scenes_.size()) scenes_.emplace_back(run.key.scene, std::vector<double>{});
+    scenes_[scene_].second.push_back(*value);
   }
-  for (const std::vector<double>& of_scene : values) means.push_back(mean(of_scene));
-  return estimate_mean(means);
+
+  [[nodiscard]] MeanEstimate estimate() const {
+    if (!by_scene_) return estimate_mean(values_);
+    std::vector<double> means;
+    for (const auto& [name, values] : scenes_) means.push_back(mean(values));
+    return estimate_mean(means);
+  }
+
+ private:
+  bool by_scene_;
+  std::vector<double> values_;
+  std::vector<std::pair<std::string_view, std::vector<double>>> scenes_;
+  std::size_t scene_{0};  ///< the last one
+};
+
+/// Returns the means of measure(run, i) for i below `count`, over the runs that have it. Takes run by run, since the
+/// views of many runs do not fit into a cache.
+template <class Measure>
+std::vector<MeanEstimate> means_of(const Runs& runs, bool by_scene, std::size_t count, const Measure& measure) {
+  std::vector<Sample> samples(count, Sample{by_scene});
+  for (const CampaignEntry* run : runs) {
+    for (std::size_t i = 0; i < count; ++i) samples[i].add(*run, measure(*run, i));
+  }
+  std::vector<MeanEstimate> means;
+  for (const Sample& sample : samples) means.push_back(sample.estimate());
+  return means;
 }
 
 CampaignSummary summary_of(const Runs& runs, CampaignGroup group, std::size_t budget) {
@@ -57,10 +74,9 @@ CampaignSummary summary_of(const Runs& runs, CampaignGroup group, std::size_t bu
   const bool by_scene = !group.scene;
   summary.group = std::move(group);
   summary.runs = runs.size();
-  for (const RunFigure& figure : run_figures()) {
-    summary.figures.push_back(
-        mean_of(runs, by_scene, [&](const CampaignEntry& run) { return figure.of(run, budget); }));
-  }
+  const std::span<const RunFigure> figures = run_figures();
+  summary.figures = means_of(runs, by_scene, figures.size(),
+                             [&](const CampaignEntry& run, std::size_t i) { return figures[i].of(run, budget); });
   std::vector<const ViewRecord*> views;
   for (const CampaignEntry* run : runs) {
     ++summary.stopped[std::string{to_string(run->run.stopped_because)}];
@@ -113,26 +129,19 @@ std::vector<CampaignSummary> summarize(std::span<const CampaignEntry> runs, std:
 std::vector<MeanEstimate> over_views(std::span<const CampaignEntry> runs, const CampaignGroup& group,
                                      std::size_t budget, MapFigure figure) {
   const Runs chosen = runs_of(runs, group);
-  std::vector<MeanEstimate> curve;
-  if (chosen.empty()) return curve;
-  for (std::size_t taken = 0; taken <= budget; ++taken) {
-    curve.push_back(mean_of(chosen, !group.scene, [&](const CampaignEntry& run) {
-      return std::optional{figure(figures_after(run, taken))};
-    }));
-  }
-  return curve;
+  if (chosen.empty()) return {};
+  return means_of(chosen, !group.scene, budget + 1, [figure](const CampaignEntry& run, std::size_t taken) {
+    return std::optional{figure(figures_after(run, taken))};
+  });
 }
 
 std::vector<MeanEstimate> object_view_shares(std::span<const CampaignEntry> runs, const CampaignGroup& group) {
   const Runs chosen = runs_of(runs, group);
-  std::vector<MeanEstimate> shares;
-  for (std::size_t k = 0; k < kFirstViews; ++k) {
-    shares.push_back(mean_of(chosen, !group.scene, [k](const CampaignEntry& run) -> std::optional<double> {
-      if (k >= run.run.views.size()) return std::nullopt;
-      return run.run.views[k].reveals_object.value_or(false) ? 1.0 : 0.0;
-    }));
-  }
-  return shares;
+  const auto points_at_object = [](const CampaignEntry& run, std::size_t k) -> std::optional<double> {
+    if (k >= run.run.views.size()) return std::nullopt;
+    return run.run.views[k].reveals_object.value_or(false) ? 1.0 : 0.0;
+  };
+  return means_of(chosen, !group.scene, kFirstViews, points_at_object);
 }
 
 std::vector<MeanEstimate> paired_gaps(std::span<const CampaignEntry> runs, const CampaignGroup& a,
@@ -140,25 +149,20 @@ std::vector<MeanEstimate> paired_gaps(std::span<const CampaignEntry> runs, const
   SACCADE_EXPECTS(a.scene == b.scene);
   std::map<std::pair<std::string, std::uint64_t>, const CampaignEntry*> of_b;
   for (const CampaignEntry* run : runs_of(runs, b)) of_b.try_emplace({run->key.scene, run->key.seed}, run);
-  const Runs of_a = runs_of(runs, a);
-  Runs twins;  // null: there is none
-  for (const CampaignEntry* run : of_a) {
+  const std::span<const RunFigure> figures = run_figures();
+  std::vector<Sample> gaps(figures.size(), Sample{!a.scene});
+  for (const CampaignEntry* run : runs_of(runs, a)) {
     const auto twin = of_b.find({run->key.scene, run->key.seed});
-    twins.push_back(twin == of_b.end() ? nullptr : twin->second);
+    if (twin == of_b.end()) continue;
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+      const std::optional<double> of_run = figures[i].of(*run, budget);
+      const std::optional<double> of_twin = figures[i].of(*twin->second, budget);
+      if (of_run && of_twin) gaps[i].add(*run, *of_run - *of_twin);
+    }
   }
-  std::vector<MeanEstimate> gaps;
-  for (const RunFigure& figure : run_figures()) {
-    std::size_t next = 0;
-    gaps.push_back(mean_of(of_a, !a.scene, [&](const CampaignEntry& run) -> std::optional<double> {
-      const CampaignEntry* twin = twins[next++];
-      if (twin == nullptr) return std::nullopt;
-      const std::optional<double> of_run = figure.of(run, budget);
-      const std::optional<double> of_twin = figure.of(*twin, budget);
-      if (!of_run || !of_twin) return std::nullopt;
-      return *of_run - *of_twin;
-    }));
-  }
-  return gaps;
+  std::vector<MeanEstimate> means;
+  for (const Sample& gap : gaps) means.push_back(gap.estimate());
+  return means;
 }
 
 }  // namespace saccade

@@ -69,6 +69,14 @@ TEST(Statistics, TheProbabilityIsTheIntegralOfTheDensity) {
   EXPECT_EQ(cases, 30);
 }
 
+TEST(Statistics, QuantilesOfManyDegreesAreThoseOfTheSeries) {
+  for (const std::size_t degrees : {1000U, 1001U, 1002U, 5001U, 60000U}) {
+    for (const double confidence : {0.05, 0.5, 0.95, 0.9999})
+      EXPECT_NEAR(student_t_probability(student_t_quantile(confidence, degrees), degrees), confidence, 1e-12)
+          << degrees << ' ' << confidence;
+  }
+}
+
 TEST(Statistics, MeanAndIntervalOfAFewValues) {
   const MeanEstimate estimate = estimate_mean(std::vector<double>{2.0, 4.0, 4.0, 6.0});
   EXPECT_EQ(estimate.n, 4U);

@@ -59,7 +59,8 @@ Result<SqliteFile> SqliteFile::open(const std::filesystem::path& path, int busy_
   sqlite3* database = nullptr;
   // Absolute, so that names such as ":memory:" or "file:x" are names of files.
   const std::string name = std::filesystem::absolute(path, ignored).string();
-  const int code = sqlite3_open_v2(name.c_str(), &database, flags | SQLITE_OPEN_FULLMUTEX, nullptr);
+  // One thread at a time, so SQLite need not lock for each value.
+  const int code = sqlite3_open_v2(name.c_str(), &database, flags | SQLITE_OPEN_NOMUTEX, nullptr);
   file.database_.reset(database);
   if (code != SQLITE_OK) return file.error(code);
   sqlite3_busy_timeout(database, busy_ms);

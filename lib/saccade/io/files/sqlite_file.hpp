@@ -17,8 +17,8 @@ struct sqlite3_stmt;
 namespace saccade {
 
 /// Open database file. Errors carry the file's path: corrupt_data for a file that is not a database or is damaged,
-/// io_failure for a full disk, a missing permission, or another process that locks the file too long. One thread;
-/// several processes may open the file.
+/// io_failure for a full disk, a missing permission, or another process that locks the file too long. One thread
+/// at a time, statements included; several processes may open the file.
 class SqliteFile {
  public:
   /// Opens or creates the file. busy_ms: how long a write waits for another process.
