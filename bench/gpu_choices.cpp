@@ -21,7 +21,7 @@ constexpr std::uint64_t kKernels{3};
 /// The surface strategy without a robot, on the CPU or with a device beside it. Follows one map.
 class Chooser {
  public:
-  explicit Chooser(SurfaceDevice* device, std::size_t every) : device_{device}, every_{every} {}
+  explicit Chooser(ViewDevice* device, std::size_t every) : device_{device}, every_{every} {}
 
   /// Chooses as ViewPlanner::rank does for the workspace as the region: expected surface (the device follows the map
   /// first), candidates, the best of them.
@@ -65,7 +65,7 @@ class Chooser {
   std::size_t evaluated{0};
 
  private:
-  SurfaceDevice* device_;
+  ViewDevice* device_;
   std::size_t every_;
   SurfaceViews views_{std::make_shared<ContourViews>()};
 };

@@ -60,7 +60,7 @@ Result<bool> check_surface(const GpuCheck& check) {
     gpu_ms.push_back(clock.lap_ms());
     same = same && equal(got, wanted);
     points = wanted.points.size();
-    const auto best = [&](ExpectedSurface surface, SurfaceDevice* device) {
+    const auto best = [&](ExpectedSurface surface, ViewDevice* device) {
       auto shared = std::make_shared<const ExpectedSurface>(std::move(surface));
       PlanningContext context{map, executor};
       context.expected = &shared;

@@ -118,8 +118,8 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
   add_mesh_options(command, options.mesh);
   add_value(command, "--strategy", options.strategy, "NAME", strategy_help(planners));
   add_saliency_options(command, options.saliency);
-  add_choice(command, "--backend", options.backend, kViewBackendNames,
-             "where the surface that is expected is computed, for the strategy surface; views are the same");
+  add_choice(command, "--backend", options.backend, kComputeBackendNames,
+             "where gains of views and the surface that is expected are computed; views are the same");
   add_run_options(command, options, min_gain_by_strategy());
   add_foresight_options(command, options);
 
@@ -149,11 +149,6 @@ void check_explore_options(const CLI::App& command, ExploreOptions& options, con
       options.surfels ? surfel_planner(options.surfels) : global.planners.find(rehearses ? "sphere" : options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
   choose_strategy(options, *strategy);
-  if (options.backend == ViewBackend::cuda && !options.expects_surface() && !rehearses) {
-    usage_error("--backend", "a GPU computes the expected surface, which " + strategy->name +
-                                 " does not use; give --strategy " + surface_planner().name +
-                                 " or --map surfels, or leave --backend out");
-  }
   if (strategy->needs_truth && !options.camera_command.empty()) {
     usage_error("--strategy", strategy->name + " knows the true scene, which there is not with --camera-command");
   }

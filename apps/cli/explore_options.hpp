@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "command.hpp"
+#include "compute_backend.hpp"
 #include "message_options.hpp"
 #include "robot_options.hpp"
 #include "run_options.hpp"
 #include "saccade/devices/cell.hpp"
 #include "segment_saliency.hpp"
 #include "serve.hpp"
-#include "view_backend.hpp"
 
 namespace saccade::cli {
 
@@ -44,7 +44,7 @@ struct ExploreOptions : RunOptions {
   bool force{false};
   std::string strategy{"surface"};  ///< as it was given
   SaliencyOptions saliency;
-  ViewBackend backend{ViewBackend::cpu};  ///< computes the expected surface
+  ComputeBackend backend{ComputeBackend::cpu};  ///< computes the expected surface
 
   MessageOptions messages;
 

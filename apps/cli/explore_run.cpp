@@ -160,6 +160,7 @@ Status ExploreRun::run(const std::function<void()>& recorded, std::unique_ptr<me
   if (look_on) messages_->add(std::move(look_on));
   const Status ended = run_to_end();
   note_gpu_problem();  // also that of the choice after the last view
+  gpu_worked_ = gpu_ && gpu_->traffic().kernels > 0;
   gpu_.reset();
   messages_->finish();
   if (ended.ok()) return ended;
@@ -178,10 +179,7 @@ Status ExploreRun::run_to_end() {
   const CancelOnInterrupt guard{cancel};
   const Approve approve = [this](const RankedView& view) { return ask(view); };
   Recorders recorders{messages_.get(), this};  // the first sees what a view was chosen from
-  if (options_.expects_surface()) {
-    SACCADE_TRY(gpu_, surface_device_on(options_.backend, map_.config()));
-    had_gpu_ = gpu_ != nullptr;
-  }
+  SACCADE_TRY(gpu_, gpu_map_on(options_.backend, map_.config()));
   ExplorerParts parts{map_, devices_.camera(), devices_.robot(), executor_, &recorders, nullptr, approve, &cancel};
   parts.device = gpu_.get();
   parts.model = options_.surfels.get();
@@ -216,12 +214,7 @@ void ExploreRun::note_gpu_problem() {
   gpu_problem_ = std::move(problem);
 }
 
-json ExploreRun::compute_to_json() const {
-  const char* const used = !had_gpu_ ? "cpu" : gpu_problem_ ? "mixed" : "cuda";
-  return {{"wanted", kViewBackendNames.of(options_.backend)},
-          {"used", used},
-          {"problem", gpu_problem_ ? json(gpu_problem_->message) : json(nullptr)}};
-}
+json ExploreRun::compute_to_json() const { return compute_json(options_.backend, gpu_worked_, gpu_problem_); }
 
 Approval ExploreRun::ask(const RankedView& view) {
   if (interrupted()) return Approval::stop;

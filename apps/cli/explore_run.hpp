@@ -64,8 +64,8 @@ class ExploreRun final : private Recorder {
   std::optional<TruthMeter> truth_meter_;  // where the scene has a truth
   std::function<void()> recorded_;
   std::unique_ptr<RunMessages> messages_;
-  std::unique_ptr<SurfaceDevice> gpu_;  // computes parts of the expected surface; null: the CPU does
-  bool had_gpu_{false};
+  std::unique_ptr<GpuMap> gpu_;  // computes gains and expected surface; null: the CPU does
+  bool gpu_worked_{false};
   std::optional<Error> gpu_problem_;
 };
 

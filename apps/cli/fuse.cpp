@@ -47,6 +47,8 @@ struct FuseRun {
   std::size_t triangles{0};
   std::optional<LoopReport> loops;
   std::optional<PagingStats> paging;
+  std::unique_ptr<GpuTracker> gpu;  ///< null: the CPU tracks
+  std::optional<Error> gpu_problem;
 };
 
 Result<std::unique_ptr<RgbdFolderSource>> open_frames(FuseRun& run) {
@@ -110,6 +112,25 @@ Status fuse_all(FuseRun& run, RgbdFolderSource& source, Reconstruction& reconstr
   return {};
 }
 
+/// Opens the GPU, where frames are to be tracked on it.
+Status open_gpu(FuseRun& run, Reconstruction& reconstruction) {
+  if (run.tracking == TrackingMode::forced) {
+    if (run.options.backend != ComputeBackend::cuda) return {};
+    return Error{Errc::invalid_argument, "a GPU tracks frames, which --tracking forced does not: leave it out",
+                 "--backend"};
+  }
+  if (run.options.is_paged()) return {};
+  SACCADE_TRY(run.gpu, gpu_tracker_on(run.options.backend, reconstruction.map().config()));
+  reconstruction.track_on(run.gpu.get());
+  return {};
+}
+
+/// Tells of what the GPU could not do.
+void note_gpu_problem(FuseRun& run) {
+  if (run.gpu) run.gpu_problem = run.gpu->take_problem();
+  if (run.gpu_problem) run.context.bar().warn("the GPU failed: " + run.gpu_problem->message + "; the CPU went on");
+}
+
 Status check_loops(const FuseRun& run) {
   if (run.options.loops != LoopMode::off && run.options.is_paged()) {
     return Error{Errc::invalid_argument, "the map that is fused again lies in memory: leave the options of paging out",
@@ -146,6 +167,7 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
               {"camera", camera_to_json(run.camera)},
               {"intrinsics_from", run.info.intrinsics_from},
               {"tracking", to_string(run.tracking)},
+              {"compute", compute_json(run.options.backend, run.gpu && run.gpu->answered() > 0, run.gpu_problem)},
               {"fill_gaps_px", record.gaps.max_gap_px},
               {"interrupted", interrupted()},
               {"frames", record.fused.size()},
@@ -300,14 +322,16 @@ class Fuse final : public Command {
   }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
-    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, {}, 0, {}, {}};
+    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}};
     SACCADE_TRY(const auto source, open_frames(run));
     SACCADE_TRY(Reconstruction reconstruction, make_reconstruction(run));
     SACCADE_CHECK(check_loops(run));
+    SACCADE_CHECK(open_gpu(run, reconstruction));
     SACCADE_CHECK(context.open_folder());
     context.lap("open");
     SACCADE_CHECK(page_map(reconstruction.map(), fuse_, context.folder()->path()));
     SACCADE_CHECK(fuse_all(run, *source, reconstruction));
+    note_gpu_problem(run);
     run.paging = reconstruction.map().paging();
     // The steps below bring in what they need, one view or block after the other.
     const Status rests = reconstruction.map().page_out_all(context.executor());

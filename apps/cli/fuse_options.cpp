@@ -23,6 +23,8 @@ void declare_fuse(Options& declared, FuseOptions& options) {
                  "folder for what is paged out (default: that of --out); it is gone when the program ends");
   declared.choice("--loops", options.loops, kLoopModeNames,
                   "close loops of tracked poses, and fuse again along the corrected ones: after the run, or beside it");
+  declared.choice("--backend", options.backend, kComputeBackendNames,
+                  "where frames are tracked: the map's ray cast, and ICP but for --tracking rgbd; poses are the same");
   declared.flag("--no-mesh{false}", options.write_mesh, "do not extract the mesh");
   declared.flag("--no-pictures{false}", options.write_pictures, "draw no pictures");
 }
@@ -32,6 +34,9 @@ void check_fuse_options(FuseOptions& options) {
   require_positive(options.map.voxel_size_m, "--voxel-size");
   require_positive(options.map.truncation_vox, "--truncation");
   require_ok(options.map.validate(), "--voxel-size, --truncation, --clearing");
+  if (options.backend == ComputeBackend::cuda && options.is_paged()) {
+    usage_error("--backend", "a GPU holds the map that lies in memory; leave out --map-memory and --moving-volume");
+  }
   if (options.moving_volume_m) require_length(*options.moving_volume_m, "--moving-volume");
   if (!options.page_folder.empty() && !options.is_paged()) {
     usage_error("--page-folder", "is for --map-memory and --moving-volume");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "compute_backend.hpp"
 #include "frame_options.hpp"
 #include "loop_mode.hpp"
 #include "saccade/map/tsdf_map.hpp"
@@ -30,6 +31,7 @@ struct FuseOptions : FrameOptions {
   bool map_size_given{false};
   std::filesystem::path continue_map;
   LoopMode loops{LoopMode::off};
+  ComputeBackend backend{ComputeBackend::cpu};
   bool write_mesh{true};
   bool write_pictures{true};
   std::optional<std::size_t> map_memory_bytes;

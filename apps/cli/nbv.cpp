@@ -8,6 +8,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "compute_backend.hpp"
 #include "context.hpp"
 #include "length_options.hpp"
 #include "saccade/core/angle.hpp"
@@ -19,7 +20,6 @@
 #include "saccade/views/view_gain.hpp"
 #include "saccade/views/view_sphere.hpp"
 #include "summary.hpp"
-#include "view_backend.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -41,7 +41,7 @@ struct NbvOptions {
   std::optional<Eigen::Vector3d> up;  ///< default: world z
   GainConfig gain;
   std::optional<Box> workspace;
-  ViewBackend backend{ViewBackend::cpu};
+  ComputeBackend backend{ComputeBackend::cpu};
   std::size_t top{10};
   bool all{false};
 
@@ -226,7 +226,7 @@ class Nbv final : public Command {
     declare_region(options);
     declare_candidates(options);
     declare_gain(options);
-    options.choice("--backend", nbv_.backend, kViewBackendNames,
+    options.choice("--backend", nbv_.backend, kComputeBackendNames,
                    "where views are evaluated; a GPU pays where one map is asked often");
     options.value("--top", nbv_.top, "N", "views to print and to write").whole_number();
     options.flag("--all", nbv_.all, "print and write all views");

@@ -57,7 +57,9 @@ TEST(ExploreChoices, AMissingGpuIsSaidWhereItWasAskedFor) {
   const Arguments options{"--max-views", "1", "--no-pictures", "--backend"};
   expect_failure(explore(tiny_cell_file(), folder / "x", options + Arguments{"cuda"}), 4, "explore", {why});
   if (kSanitized) return;
-  EXPECT_EQ(explore(tiny_cell_file(), folder / "y", options + Arguments{"auto"}).status, 0);
+  const Outcome automatic = explore(tiny_cell_file(), folder / "y", options + Arguments{"auto", "--json", "-"});
+  ASSERT_EQ(automatic.status, 0) << automatic.err;
+  EXPECT_EQ(automatic.json().at("result").at("compute").at("used"), "cpu");
 }
 
 TEST(ExploreChoices, AMeshInMillimetresIsScaledOntoTheTable) {

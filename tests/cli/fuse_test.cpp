@@ -137,6 +137,19 @@ TEST_F(Fuse, WhatIsNotThereIsNoFolder) {
                  {bag, "there is no such file or folder"});
 }
 
+TEST_F(Fuse, SaysWhereFramesWereTracked) {
+  const nlohmann::json info = run_program({"info", "--json", "-"}).json().at("result");
+  const Arguments brief{"--no-pictures", "--no-mesh", "--count", "3", "--backend"};
+  const auto with = [&](const Arguments& more) { return run_program(fuse(frames(), run(), brief + more)); };
+  expect_failure(with({"cuda", "--tracking", "forced"}), 3, "fuse", {"--backend", "--tracking forced"});
+  expect_failure(with({"cuda", "--tracking", "icp", "--map-memory", "1MiB"}), 2, "fuse", {"--map-memory"});
+  if (info.at("backends").at("cuda")) GTEST_SKIP() << "there is a GPU";
+  expect_failure(with({"cuda", "--tracking", "icp"}), 4, "fuse", {info.at("cuda").at("absent_because")});
+  const nlohmann::json compute =
+      fused(Arguments{"--tracking", "icp"} + brief + Arguments{"auto"}).at("result").at("compute");
+  EXPECT_EQ(compute, (nlohmann::json{{"wanted", "auto"}, {"used", "cpu"}, {"problem", nullptr}}));
+}
+
 TEST_F(Fuse, ProgressGoesToStandardErrorAsLines) {
   const Outcome outcome =
       run_program({"fuse", frames().string(), "--out", run().string(), "--voxel-size", "0.01", "--no-pictures"});

@@ -20,7 +20,7 @@
 namespace saccade {
 
 struct ExpectedSurface;
-class SurfaceDevice;
+class ViewDevice;
 
 /// View that was taken, and the share of its promise that it kept.
 struct CheckedView {
@@ -43,7 +43,7 @@ struct PlanningContext {
   std::function<Result<OwnBody>(const PinholeCamera& sensor)> own_body{};
   /// Place where parts of one choice share the expected surface of the map; nullptr: each computes it.
   std::shared_ptr<const ExpectedSurface>* expected{nullptr};
-  SurfaceDevice* device{nullptr};  ///< computes parts of the expected surface; nullptr: the CPU does
+  ViewDevice* device{nullptr};  ///< computes gains and expected surface; nullptr: the CPU does
 
   [[nodiscard]] bool was_attempted(const Pose& T_world_camera) const { return attempted && attempted(T_world_camera); }
 

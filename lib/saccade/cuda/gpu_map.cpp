@@ -140,6 +140,14 @@ Result<GainResult> GpuMap::evaluate_views(const Region& region, std::span<const 
   return result;
 }
 
+Result<GainResult> GpuMap::evaluate_views_of(const TsdfSnapshot& map, const Region& region,
+                                             std::span<const Pose> T_world_camera, const GainConfig& config,
+                                             const Executor& executor) {
+  SACCADE_CHECK(can_evaluate(region, config));
+  SACCADE_CHECK(follow(map, executor));
+  return impl_->noted(evaluate_views(region, T_world_camera, config, executor));
+}
+
 Result<std::uint64_t> GpuMap::read_states(const IndexBox& box, std::span<VoxelState> states) {
   if (box.empty()) return Error{Errc::invalid_argument, "a box without voxels has no states", "cuda"};
   return impl_->noted(impl_->with_bricks(parents(box), [&] {

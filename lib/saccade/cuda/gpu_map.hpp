@@ -12,7 +12,7 @@
 #include "saccade/cuda/device.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/views/surface_device.hpp"
+#include "saccade/views/view_device.hpp"
 #include "saccade/views/view_gain.hpp"
 
 namespace saccade {
@@ -29,14 +29,14 @@ struct GpuTraffic {
 };
 
 /// Map on a GPU. Its voxels equal those of TsdfMap to the bit after the same images, its gains those of evaluate_views,
-/// and what it does as a SurfaceDevice that of the CPU. Colours are not fused. One thread at a time.
+/// and what it does as a ViewDevice that of the CPU. Colours are not fused. One thread at a time.
 ///
 /// The map lies in a flat table of bricks that grows with what is seen, and in pools of the bricks whose voxels differ,
 /// 2.1 KiB each. Only bricks that changed go to the GPU, and come back. Where its memory does not suffice for the map,
 /// the GPU holds the bricks that the work at hand can meet, and the host the rest. Where it does not suffice for these
 /// either, the call answers unavailable, and the map stays as it was: snapshot() returns it whole. A GPU that is lost
 /// takes with it what it fused since the last snapshot(), which then answers unavailable like every other call.
-class GpuMap final : public SurfaceDevice {
+class GpuMap final : public ViewDevice {
  public:
   /// Opens the first GPU. Answers unavailable where there is none; invalid_argument for an invalid configuration.
   [[nodiscard]] static Result<GpuMap> create(const TsdfConfig& config);
@@ -76,6 +76,9 @@ class GpuMap final : public SurfaceDevice {
   [[nodiscard]] Result<GainResult> evaluate_views(const Region& region, std::span<const Pose> T_world_camera,
                                                   const GainConfig& config, const Executor& executor);
 
+  [[nodiscard]] Result<GainResult> evaluate_views_of(const TsdfSnapshot& map, const Region& region,
+                                                     std::span<const Pose> T_world_camera, const GainConfig& config,
+                                                     const Executor& executor) override;
   [[nodiscard]] Result<std::uint64_t> read_states(const IndexBox& box, std::span<VoxelState> states) override;
   [[nodiscard]] Result<std::vector<ExposedVoxel>> exposed(std::uint64_t ticket, const ExposureTask& task) override;
   [[nodiscard]] Result<std::vector<std::uint8_t>> in_sight(std::uint64_t ticket, std::span<const LineOfSight> lines,

@@ -66,7 +66,7 @@ struct ExplorerParts {
   const Progress* progress{nullptr};
   std::function<bool()> suspended{};  ///< asked before each frame; true: none is taken. Empty: all are taken
   SurfaceModel* model{nullptr};       ///< fused beside the map; nullptr: the map alone is the model
-  SurfaceDevice* device{nullptr};     ///< computes parts of the expected surface; nullptr: the CPU does
+  ViewDevice* device{nullptr};        ///< computes gains and expected surface; nullptr: the CPU does
 };
 
 /// Return to the stand-by pose.

@@ -25,7 +25,7 @@ struct PlanningScene {
   const Attempts* attempts{nullptr};      ///< nullptr: no attempts yet
   std::size_t first_region{0};            ///< regions of a lower index are done
   std::optional<PinholeCamera> sensor{};  ///< field of view and range of a view, tilts included; nullopt: unknown
-  SurfaceDevice* device{nullptr};         ///< computes parts of the expected surface; nullptr: the CPU does
+  ViewDevice* device{nullptr};            ///< computes gains and expected surface; nullptr: the CPU does
 
   /// Returns the part of it for attention, view generator and gain.
   [[nodiscard]] PlanningContext context(std::size_t region = 0) const {

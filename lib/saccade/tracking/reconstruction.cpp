@@ -7,20 +7,42 @@
 #include "saccade/map/raycast.hpp"
 
 namespace saccade {
+namespace {
+
+Result<SurfaceView> cast(const TsdfSnapshot& map, const PinholeCamera& camera, const Pose& T_world_camera,
+                         const Executor& executor, TrackingDevice* device) {
+  if (device != nullptr) {
+    Result<SurfaceView> view = device->raycast(map, camera, T_world_camera, executor);
+    if (view.ok()) return view;
+  }
+  return raycast(map, camera, T_world_camera, executor);
+}
+
+IcpResult aligned(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,
+                  const Executor& executor, const IcpConfig& icp, TrackingDevice* device) {
+  if (device != nullptr) {
+    Result<IcpResult> result = device->align(measured, model, camera, Pose::Identity(), icp);
+    if (result.ok()) return *std::move(result);
+  }
+  return align(measured, model, camera, Pose::Identity(), executor, icp);
+}
+
+}  // namespace
 
 Result<FrameReport> track_frame(const TsdfSnapshot& map, const Frame& frame, const PinholeCamera& camera,
-                                const Pose& T_world_start, const Executor& executor, const IcpConfig& icp) {
+                                const Pose& T_world_start, const Executor& executor, const IcpConfig& icp,
+                                TrackingDevice* device) {
   if (frame.depth.width() != camera.width || frame.depth.height() != camera.height) {
     return Error{Errc::size_mismatch, "the depth image and the camera differ in size", frame.name};
   }
   FrameReport report;
   report.T_world_camera = T_world_start;
   Stopwatch stopwatch;
-  SACCADE_TRY(const SurfaceView view, raycast(map, camera, T_world_start, executor));
+  SACCADE_TRY(const SurfaceView view, cast(map, camera, T_world_start, executor, device));
   report.raycast_ms = stopwatch.lap_ms();
   const PointImage model = to_points(view, executor);
   const PointImage measured = to_points(frame.depth, camera, executor);
-  report.icp = align(measured, model, camera, Pose::Identity(), executor, icp);
+  report.icp = aligned(measured, model, camera, executor, icp, device);
   report.track_ms = stopwatch.lap_ms();
   report.confidence = tracking_confidence(report.icp, icp);
   if (report.icp.converged) {
@@ -56,7 +78,8 @@ void Reconstruction::resume(const Pose& T_world_camera_hint) {
 SurfaceAt Reconstruction::seen_surface(const PinholeCamera& camera, const Executor& executor) {
   return [this, &camera, &executor](const Pose& T_world_camera) -> Result<PointImage> {
     SACCADE_CHECK(map_.look_from(camera, T_world_camera, executor));
-    return surface_of_map(map_.content(), camera, executor)(T_world_camera);
+    SACCADE_TRY(const SurfaceView view, cast(map_.content(), camera, T_world_camera, executor, device_));
+    return to_points(view, executor);
   };
 }
 
@@ -93,7 +116,7 @@ Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCam
       SACCADE_TRY(report, tracker_.track(seen_surface(camera, executor), frame, camera, executor));
     } else {
       SACCADE_CHECK(map_.look_from(camera, start, executor));
-      SACCADE_TRY(report, track_frame(map_.content(), frame, camera, start, executor, icp_));
+      SACCADE_TRY(report, track_frame(map_.content(), frame, camera, start, executor, icp_, device_));
     }
     if (report.status == FrameReport::Status::lost) {
       report.T_world_camera = kept;

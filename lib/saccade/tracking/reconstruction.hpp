@@ -11,6 +11,7 @@
 #include "saccade/tracking/frame_report.hpp"
 #include "saccade/tracking/icp.hpp"
 #include "saccade/tracking/rgbd_tracker.hpp"
+#include "saccade/tracking/tracking_device.hpp"
 
 namespace saccade {
 
@@ -39,9 +40,10 @@ struct ReconstructionConfig {
 
 /// Finds the pose of a frame by ICP against the map as seen from `T_world_start`. Fuses nothing. A lost track is a
 /// result. Errors: size_mismatch, and those of raycast.
+/// @param device  casts the map and aligns the frame, with the same result; nullptr: the CPU does
 [[nodiscard]] Result<FrameReport> track_frame(const TsdfSnapshot& map, const Frame& frame, const PinholeCamera& camera,
                                               const Pose& T_world_start, const Executor& executor,
-                                              const IcpConfig& icp = {});
+                                              const IcpConfig& icp = {}, TrackingDevice* device = nullptr);
 
 /// KinectFusion's loop (thesis §2.2.1): ray cast, convert, track, integrate. One frame at a time, one thread calling;
 /// snapshots of map() may be taken from other threads.
@@ -60,6 +62,10 @@ class Reconstruction {
   /// needed, a bad camera or pose).
   [[nodiscard]] Result<FrameReport> process(const Frame& frame, const PinholeCamera& camera, TrackingMode mode,
                                             const std::optional<Pose>& hint, const Executor& executor);
+
+  /// Lets a device cast the map, and align frames in all modes but rgbd, with the same results; nullptr: the CPU does.
+  /// The device must outlive its use here.
+  void track_on(TrackingDevice* device) { device_ = device; }
 
   /// Ignores frames until resume(). The map persists.
   void suspend() { suspended_ = true; }
@@ -84,6 +90,7 @@ class Reconstruction {
   TsdfMap map_;
   IcpConfig icp_;
   RgbdTracker tracker_;
+  TrackingDevice* device_{nullptr};
   bool suspended_{false};
   std::optional<Pose> T_world_last_;
   std::optional<Pose> T_world_resume_;

@@ -14,7 +14,7 @@
 #include "saccade/views/internal/find_supports.hpp"
 #include "saccade/views/internal/find_walls.hpp"
 #include "saccade/views/internal/state_volume.hpp"
-#include "saccade/views/surface_device.hpp"
+#include "saccade/views/view_device.hpp"
 
 namespace saccade {
 namespace {
@@ -185,7 +185,7 @@ void find_supports_below(const StateVolume& volume, std::span<const std::vector<
 
 /// Reads the volume on a device where that works, else on the CPU.
 Result<StateVolume> read_volume(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor,
-                                SurfaceDevice* device) {
+                                ViewDevice* device) {
   if (device != nullptr && device->follow(map, executor).ok()) {
     if (Result<StateVolume> volume = StateVolume::read(map, box, *device); volume.ok()) return volume;
   }
@@ -201,7 +201,7 @@ struct SupportedVolume {
 /// Reads the workspace and finds its supports. Where there are none, they are looked for just below it, too: what
 /// stands on a table whose top is the workspace's floor would be taken for something that floats.
 Result<SupportedVolume> read_with_supports(const TsdfSnapshot& map, const IndexBox& box, double min_support_m2,
-                                           const Executor& executor, SurfaceDevice* device) {
+                                           const Executor& executor, ViewDevice* device) {
   constexpr std::int32_t kLayersBelow{3};
   SACCADE_TRY(StateVolume volume, read_volume(map, box, executor, device));
   std::vector<Support> supports = find_supports(map, volume, min_support_m2, executor);
@@ -267,7 +267,7 @@ std::int32_t ExpectedSurface::object_near(const Eigen::Vector3d& p_m, double wit
 }
 
 Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,
-                                         const Executor& executor, SurfaceDevice* device) {
+                                         const Executor& executor, ViewDevice* device) {
   SACCADE_CHECK(config.validate());
   const double voxel_m = map.config.voxel_size_m;
   const IndexBox box =

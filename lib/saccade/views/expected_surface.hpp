@@ -15,7 +15,7 @@
 namespace saccade {
 
 class StateVolume;
-class SurfaceDevice;
+class ViewDevice;
 
 struct ExpectedSurfaceConfig {
   /// Objects are completed down to their supports: level surfaces that were seen over at least this area.
@@ -82,7 +82,7 @@ struct ExpectedSurface {
 /// O(voxels of the workspace). The thread count never changes a bit.
 /// @param device reads the voxels' states and finds the exposed ones; nullptr, or an error of the device: the CPU does.
 [[nodiscard]] Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,
-                                                       const Executor& executor, SurfaceDevice* device = nullptr);
+                                                       const Executor& executor, ViewDevice* device = nullptr);
 
 /// Returns the expected surface of a context's map. Parts of one choice with equal configurations share it.
 [[nodiscard]] Result<std::shared_ptr<const ExpectedSurface>> expected_surface(const PlanningContext& context,

@@ -8,6 +8,7 @@
 #include "saccade/views/internal/best_views.hpp"
 #include "saccade/views/internal/check_finite.hpp"
 #include "saccade/views/internal/credible_rays.hpp"
+#include "saccade/views/view_device.hpp"
 
 namespace saccade {
 namespace {
@@ -21,14 +22,20 @@ std::vector<Pose> poses_of(std::span<const RankedView> views) {
   return poses;
 }
 
-/// Computes the gains of the first views.
-Status tell_gains(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
-                  std::span<RankedView> views) {
-  const std::vector<Pose> poses = poses_of(views);
-  SACCADE_TRY(const std::vector<double> gains, gain.evaluate(context, region, poses));
-  if (gains.size() != poses.size()) {
+/// Computes one gain per pose.
+Result<std::vector<double>> gains_of(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
+                                     std::span<const Pose> T_world_camera) {
+  SACCADE_TRY(std::vector<double> gains, gain.evaluate(context, region, T_world_camera));
+  if (gains.size() != T_world_camera.size()) {
     return Error{Errc::size_mismatch, "a gain must return one value per pose", "gain"};
   }
+  return gains;
+}
+
+/// Computes the gains of views.
+Status tell_gains(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
+                  std::span<RankedView> views) {
+  SACCADE_TRY(const std::vector<double> gains, gains_of(gain, context, region, poses_of(views)));
   for (std::size_t i = 0; i < views.size(); ++i) views[i].gain = gains[i];
   return {};
 }
@@ -51,15 +58,19 @@ std::vector<Pose> most_credible(std::vector<Pose> poses, const CredibleRays& ray
   return poses_of(views);
 }
 
-/// Returns all poses by decreasing gain.
-Result<RankedViews> by_evaluation(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
-                                  std::span<const Pose> T_world_camera) {
+RankedViews in_order(std::span<const Pose> T_world_camera, std::span<const double> gains) {
   RankedViews ranked;
-  for (const Pose& pose : T_world_camera) ranked.views.push_back({pose});
-  SACCADE_CHECK(tell_gains(gain, context, region, ranked.views));
+  for (std::size_t i = 0; i < gains.size(); ++i) ranked.views.push_back({T_world_camera[i], gains[i]});
   ranked.evaluated = ranked.views.size();
   order_by_gain(ranked.views);
   return ranked;
+}
+
+/// Returns all poses by decreasing gain.
+Result<RankedViews> by_evaluation(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
+                                  std::span<const Pose> T_world_camera) {
+  SACCADE_TRY(const std::vector<double> gains, gains_of(gain, context, region, T_world_camera));
+  return in_order(T_world_camera, gains);
 }
 
 }  // namespace
@@ -106,8 +117,18 @@ Result<RankedViews> Gain::best(const PlanningContext& context, const RegionOfInt
   return ranked;
 }
 
+std::optional<std::vector<double>> RayGain::on_device(const PlanningContext& context, const RegionOfInterest& region,
+                                                      std::span<const Pose> T_world_camera) const {
+  if (context.device == nullptr) return std::nullopt;
+  const Result<GainResult> result =
+      context.device->evaluate_views_of(context.map, region.bounds, T_world_camera, config_, context.executor);
+  if (!result.ok()) return std::nullopt;
+  return std::vector<double>(result->gains.begin(), result->gains.end());
+}
+
 Result<std::vector<double>> RayGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                               std::span<const Pose> T_world_camera) {
+  if (auto gains = on_device(context, region, T_world_camera)) return *std::move(gains);
   SACCADE_TRY(const GainResult result,
               evaluate_views(context.map, region.bounds, T_world_camera, config_, context.executor));
   return std::vector<double>(result.gains.begin(), result.gains.end());
@@ -117,6 +138,7 @@ Result<std::vector<double>> RayGain::evaluate(const PlanningContext& context, co
 Result<RankedViews> RayGain::by_rays(const PlanningContext& context, const RegionOfInterest& region,
                                      std::span<const Pose> T_world_camera, std::size_t count) {
   if (count >= T_world_camera.size()) return by_evaluation(*this, context, region, T_world_camera);
+  if (const auto gains = on_device(context, region, T_world_camera)) return in_order(T_world_camera, *gains);
   RankedViews ranked;
   std::vector<Pose> others;
   for (const Pose& pose : T_world_camera) {

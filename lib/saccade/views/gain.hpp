@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,7 +63,7 @@ enum class Trust : std::uint8_t {
   blind,     ///< leaves gains unchanged, as in the thesis
 };
 
-/// Gain that counts rays as evaluate_views does.
+/// Gain that counts rays as evaluate_views does, on the context's device where that can.
 class RayGain final : public Gain {
  public:
   explicit RayGain(const GainConfig& config, Trust trust = Trust::credible) : config_{config}, trust_{trust} {}
@@ -74,6 +75,10 @@ class RayGain final : public Gain {
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 
  private:
+  /// Returns the gains that the context's device computes; nullopt: there is none, or it cannot.
+  [[nodiscard]] std::optional<std::vector<double>> on_device(const PlanningContext& context,
+                                                             const RegionOfInterest& region,
+                                                             std::span<const Pose> T_world_camera) const;
   [[nodiscard]] Result<RankedViews> by_rays(const PlanningContext& context, const RegionOfInterest& region,
                                             std::span<const Pose> T_world_camera, std::size_t count);
 

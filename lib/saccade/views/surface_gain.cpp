@@ -43,7 +43,7 @@ struct Sighted {
 
 /// Bounds each pose by the surface that faces its camera, and traces lines of sight from the centres close to the best.
 Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_camera, std::size_t count, bool one_roll,
-                const Executor& executor, SurfaceDevice* device) {
+                const Executor& executor, ViewDevice* device) {
   std::vector<RankedView> views;
   for (const Pose& pose : T_world_camera) views.push_back({pose});
   const std::vector<std::size_t> starts = starts_of_centers(T_world_camera);
@@ -182,7 +182,7 @@ Result<RankedViews> SurfaceGain::ranked(const PlanningContext& context, const Re
       others.push_back(pose);
     }
   }
-  SurfaceDevice* const device = sight_ ? nullptr : context.device;  // it looks along voxels
+  ViewDevice* const device = sight_ ? nullptr : context.device;  // it looks along voxels
   Sighted best = sighted(*prospect, others, count, config_.one_roll, context.executor, device);
   without_body(*prospect, best, count, context.executor);
   RankedViews ranked;

@@ -100,10 +100,10 @@ TEST(DeviceFaults, AFullGpuIsSaidThoughTheCpuCompletesTheSurface) {
   EXPECT_TRUE(map.on_gpu());
 }
 
-TEST(DeviceFaults, ASurfaceDeviceSaysOnceWhyTheCpuWentOn) {
+TEST(DeviceFaults, AViewDeviceSaysOnceWhyTheCpuWentOn) {
   Maps maps;
   ASSERT_TRUE(maps.cpu.integrate(kCamera, waves(), maps.T_world_camera, {}).ok());
-  SurfaceDevice& device = maps.gpu;
+  ViewDevice& device = maps.gpu;
   const ExpectedSurface done = expected_surface(maps.cpu.content(), {}, {}, &device).value();
   EXPECT_NE(done.volume->ticket(), 0U);
   EXPECT_FALSE(device.take_problem().has_value());

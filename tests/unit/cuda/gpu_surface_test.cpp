@@ -152,7 +152,7 @@ struct Choice {
     }
     if (seed % 2 == 0) checked = {{poses[0], 0.1}, {poses[5], 0.6}};
   }
-  [[nodiscard]] RankedViews best(SurfaceDevice* device, double doubtful_share) const {
+  [[nodiscard]] RankedViews best(ViewDevice* device, double doubtful_share) const {
     SurfaceGainConfig config;
     config.sensor.min_range_m = 0.2;
     config.doubtful_share = doubtful_share;

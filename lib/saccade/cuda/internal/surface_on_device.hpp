@@ -4,7 +4,7 @@
 
 #include "saccade/cuda/internal/brick_store.hpp"
 #include "saccade/cuda/internal/surface_kernel.hpp"
-#include "saccade/views/surface_device.hpp"
+#include "saccade/views/view_device.hpp"
 
 namespace saccade::internal::cuda {
 
@@ -13,7 +13,7 @@ class SurfaceOnDevice {
  public:
   explicit SurfaceOnDevice(Compute& compute);
 
-  /// As SurfaceDevice, of the bricks.
+  /// As ViewDevice, of the bricks.
   [[nodiscard]] Result<std::uint64_t> read_states(const BrickStore& bricks, double voxel_size_m, const IndexBox& box,
                                                   std::span<VoxelState> states);
   [[nodiscard]] Result<std::vector<ExposedVoxel>> exposed(std::uint64_t ticket, const ExposureTask& task);

@@ -61,7 +61,7 @@ Result<StateVolume> StateVolume::unknown(const TsdfSnapshot& map, const IndexBox
   return volume;
 }
 
-Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& box, SurfaceDevice& device) {
+Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& box, ViewDevice& device) {
   SACCADE_TRY(StateVolume volume, unknown(map, box));
   if (volume.size() > 0) {
     SACCADE_TRY(volume.ticket_, device.read_states(volume.box_, volume.states_));

@@ -10,7 +10,7 @@
 #include "saccade/core/result.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/views/internal/line_of_sight.hpp"
-#include "saccade/views/surface_device.hpp"
+#include "saccade/views/view_device.hpp"
 
 namespace saccade {
 
@@ -25,7 +25,7 @@ class StateVolume {
   [[nodiscard]] static Result<StateVolume> read(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor);
   static constexpr double kMostVoxels{536'870'912.0};
   /// Reads a box of the map that a device follows. Errors: those of read(), and of the device.
-  [[nodiscard]] static Result<StateVolume> read(const TsdfSnapshot& map, const IndexBox& box, SurfaceDevice& device);
+  [[nodiscard]] static Result<StateVolume> read(const TsdfSnapshot& map, const IndexBox& box, ViewDevice& device);
 
   [[nodiscard]] const IndexBox& box() const { return box_; }
   [[nodiscard]] double voxel_size_m() const { return voxel_size_m_; }

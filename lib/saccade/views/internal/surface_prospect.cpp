@@ -6,7 +6,7 @@
 
 #include "saccade/attention/salient_objects.hpp"
 #include "saccade/views/internal/state_volume.hpp"
-#include "saccade/views/surface_device.hpp"
+#include "saccade/views/view_device.hpp"
 
 namespace saccade {
 namespace {
@@ -143,7 +143,7 @@ std::vector<SurfaceProspect::TileVisibility> SurfaceProspect::visible(std::span<
   return sights;
 }
 
-Result<std::vector<double>> SurfaceProspect::shares_on(SurfaceDevice& device,
+Result<std::vector<double>> SurfaceProspect::shares_on(ViewDevice& device,
                                                        std::span<const std::vector<TileVisibility>> sights,
                                                        std::span<const Eigen::Vector3d> cameras_m) const {
   std::vector<LineOfSight> lines;
@@ -168,7 +168,7 @@ Result<std::vector<double>> SurfaceProspect::shares_on(SurfaceDevice& device,
 }
 
 std::vector<std::vector<SurfaceProspect::TileVisibility>> SurfaceProspect::visible(
-    std::span<const std::span<const Pose>> places, const Executor& executor, SurfaceDevice* device) const {
+    std::span<const std::span<const Pose>> places, const Executor& executor, ViewDevice* device) const {
   std::vector<std::vector<TileVisibility>> sights(places.size());
   const auto for_each_place = [&](const auto& visit) {
     executor.parallel_for(places.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -14,7 +14,7 @@
 
 namespace saccade {
 
-class SurfaceDevice;
+class ViewDevice;
 
 /// Visible surface of a region. Immutable; safe for concurrent use if the context's own body is.
 class SurfaceProspect {
@@ -44,7 +44,7 @@ class SurfaceProspect {
   /// Returns the visible points of several places, the poses of each of which share it. A device traces lines of
   /// sight; nullptr, or an error of the device: the CPU does.
   [[nodiscard]] std::vector<std::vector<TileVisibility>> visible(std::span<const std::span<const Pose>> places,
-                                                                 const Executor& executor, SurfaceDevice* device) const;
+                                                                 const Executor& executor, ViewDevice* device) const;
   /// Returns the area of the points that lie in the image, cm².
   [[nodiscard]] double area_in_picture(std::span<const TileVisibility> sights, const Pose& T_world_camera) const;
   /// Returns the promise of a pose: visible points in the image that the robot's own body does not hide.
@@ -62,7 +62,7 @@ class SurfaceProspect {
   /// Returns the points that face the place of some poses and lie in one of their images.
   [[nodiscard]] std::vector<TileVisibility> in_pictures(std::span<const Pose> T_world_camera) const;
   /// Returns the shares of in_sight() for the sights of several places, as the device finds them.
-  [[nodiscard]] Result<std::vector<double>> shares_on(SurfaceDevice& device,
+  [[nodiscard]] Result<std::vector<double>> shares_on(ViewDevice& device,
                                                       std::span<const std::vector<TileVisibility>> sights,
                                                       std::span<const Eigen::Vector3d> cameras_m) const;
   /// Keeps the sights whose share is not 0, with that share of their area and their credit.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfaceDevice: the seam to a device that computes parts of the expected surface, such as a GPU.
+// ViewDevice: the seam to a device that evaluates views and computes parts of the expected surface, such as a GPU.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/pose.hpp"
+#include "saccade/core/region.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/views/view_gain.hpp"
 
 namespace saccade {
 
@@ -25,12 +28,17 @@ struct LineOfSight {
 
 /// Device beside the CPU. What it returns equals the CPU's to the bit. One caller at a time. After an error of the
 /// device the CPU does the work: every caller goes on without the device for that call.
-class SurfaceDevice {
+class ViewDevice {
  public:
-  virtual ~SurfaceDevice() = default;
-  /// Makes a map the one that the calls below are about. Parts that did not change since the last call are not sent
+  virtual ~ViewDevice() = default;
+  /// Makes a map the one that read_states is about. Parts that did not change since the last call are not sent
   /// again. O(bricks that changed).
   [[nodiscard]] virtual Status follow(const TsdfSnapshot& map, const Executor& executor) = 0;
+  /// Computes the gains of saccade::evaluate_views, and follows the map. Answers unsupported for what it does not
+  /// compute, before anything is sent. O(bricks that changed + rays that meet the region · bricks along them).
+  [[nodiscard]] virtual Result<GainResult> evaluate_views_of(const TsdfSnapshot& map, const Region& region,
+                                                             std::span<const Pose> T_world_camera,
+                                                             const GainConfig& config, const Executor& executor) = 0;
   /// Writes the states of the voxels of a box, x fastest, and keeps them until the next call.
   /// @return a ticket, never 0, for the calls below: they refuse any but the last one with invalid_argument. O(voxels).
   [[nodiscard]] virtual Result<std::uint64_t> read_states(const IndexBox& box, std::span<VoxelState> states) = 0;

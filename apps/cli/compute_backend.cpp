@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compute_backend.hpp"
+
+namespace saccade::cli {
+namespace {
+
+Result<GainResult> evaluate_on_gpu(const TsdfSnapshot& map, const Region& region, std::span<const Pose> T_world_camera,
+                                   const GainConfig& config, const Executor& executor) {
+  SACCADE_CHECK(GpuMap::can_evaluate(region, config));  // before a GPU is opened in vain
+  SACCADE_TRY(GpuMap gpu, GpuMap::create(map.config));
+  SACCADE_CHECK(gpu.assign(map));
+  return gpu.evaluate_views(region, T_world_camera, config, executor);
+}
+
+/// Opens what a GPU does for a map.
+template <class Device>
+Result<std::unique_ptr<Device>> opened(ComputeBackend backend, const TsdfConfig& config) {
+  std::unique_ptr<Device> device;
+  if (backend == ComputeBackend::cpu) return device;
+  Result<Device> gpu = Device::create(config);
+  if (gpu.ok()) {
+    device = std::make_unique<Device>(std::move(gpu).value());
+  } else if (backend == ComputeBackend::cuda) {
+    return gpu.error();
+  }
+  return device;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GpuMap>> gpu_map_on(ComputeBackend backend, const TsdfConfig& config) {
+  return opened<GpuMap>(backend, config);
+}
+
+Result<std::unique_ptr<GpuTracker>> gpu_tracker_on(ComputeBackend backend, const TsdfConfig& config) {
+  return opened<GpuTracker>(backend, config);
+}
+
+nlohmann::json compute_json(ComputeBackend wanted, bool gpu_worked, const std::optional<Error>& problem) {
+  return {{"wanted", kComputeBackendNames.of(wanted)},
+          {"used", problem      ? "mixed"
+                   : gpu_worked ? "cuda"
+                                : "cpu"},
+          {"problem", problem ? nlohmann::json(problem->message) : nlohmann::json(nullptr)}};
+}
+
+Result<GainResult> evaluate_views_on(ComputeBackend backend, const TsdfSnapshot& map, const Region& region,
+                                     std::span<const Pose> T_world_camera, const GainConfig& config,
+                                     const Executor& executor, const Progress& progress) {
+  if (backend != ComputeBackend::cpu) {
+    Result<GainResult> result = evaluate_on_gpu(map, region, T_world_camera, config, executor);
+    if (result.ok() || backend == ComputeBackend::cuda) return result;
+  }
+  return evaluate_views(map, region, T_world_camera, config, executor, progress);
+}
+
+}  // namespace saccade::cli
