@@ -37,6 +37,12 @@ step() {
   return 1
 }
 
+campaign() {  # NAME compare|benchmark OPTIONS…: on Slurm where it answers
+  local name="$1"
+  shift
+  step "$name" scripts/evidence_campaign.py build/release/saccade "$out/$name" "$@"
+}
+
 fuse() {  # SEQUENCE TRACKING OPTIONS…
   local sequence="$1" tracking="$2" name="fuse_$1_$2"
   shift 2
@@ -142,22 +148,17 @@ step reproduce_views build/release/saccade --quiet reproduce 2.16 2.17 2.18 2.19
 
 echo "Explorations: ten seeds, noise on"
 scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'import json, sys; print(",".join(s["name"] for s in json.load(sys.stdin)["result"]["scenes"] if not s["name"].endswith("-before")))')"
-step compare build/release/saccade --quiet compare --scenes "$scenes,clutter:1" --strategies sphere,random --seeds 1-10 --max-views 12 \
-  --equal-views --robot free --out "$out/compare" --json "$out/compare.json"
+campaign compare compare --scenes "$scenes,clutter:1" --strategies sphere,random --seeds 1-10 --max-views 12 --equal-views --robot free
 
 echo "Attention beside others: the arm, ten seeds in the tabletop scenes, thirty scenes of random clutter, noise on"
-step attention build/release/saccade --quiet compare --scenes tabletop-1,tabletop-2,tabletop-3,tabletop-4 \
-  --strategies attention,standard,sphere,random-contours,oracle --robot comau --seeds 1-10 --max-views 5 --out "$out/attention" \
-  --json "$out/attention.json"
-step attention_clutter build/release/saccade --quiet compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle \
-  --robot comau --seeds 1 --max-views 5 --out "$out/attention_clutter" --json "$out/attention_clutter.json"
+campaign attention compare --scenes tabletop-1,tabletop-2,tabletop-3,tabletop-4 \
+  --strategies attention,standard,sphere,random-contours,oracle --robot comau --seeds 1-10 --max-views 5
+campaign attention_clutter compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle --robot comau --seeds 1 --max-views 5
 
-echo "Published protocols: stand-ins, and the meshes that are there, on Slurm where it answers; each leaves its table.csv in $out"
+echo "Published protocols: stand-ins, and the meshes that are there; each leaves its table.csv in $out"
 # Nothing goes from there to docs/guides/benchmark.md: its tables are copied from such files by hand, with command and seeds.
 protocol() {  # NAME PROTOCOL OPTIONS…
-  local name="$1"
-  shift
-  step "$name" scripts/evidence_campaign.py build/release/saccade "$out/$name" benchmark "$@" --seeds 1-3
+  campaign "$1" benchmark "${@:2}" --seeds 1-3
 }
 for protocol in view-sphere one-shot tabletop-arm household; do
   protocol "benchmark_$protocol" "$protocol"
@@ -173,7 +174,7 @@ if [[ -d $data/meshes_ycb ]]; then
   protocol benchmark_ycb household --objects "$data/meshes_ycb"
 fi
 
-echo "The planner beside the oracle, baselines and sphere; figures go to docs/results/planner.md"
+echo "The planner beside the oracle, baselines and sphere, on Slurm where it answers; figures go to docs/results/planner.md"
 step planner scripts/evidence_planner.py build/release/saccade "$out/planner" docs/results/planner.md
 
 echo "The headline figures: a hundred scenes, ten seeds, five strategies; on Slurm where it answers, else here, some 18 hours on two cores"

@@ -4,8 +4,9 @@
 
 Runs the campaigns (all of them, or those that are named) with `saccade compare`, each into a folder of its own under
 FOLDER, where what was done before is not done again, and writes what they come to into DOCUMENT, with what it is held
-to. "table" in place of a campaign runs none, and writes what there is. Exit status 1: something that is held to was
-missed, 2: a campaign failed.
+to. Where a cluster answers, all of them are submitted there (evidence_campaign.py), and a later call goes on.
+"table" in place of a campaign runs none, and writes what there is. Exit status 1: something that is held to was missed,
+2: a campaign failed, 3: one is not complete.
 SACCADE_DATA: scanned meshes (../shared/data)."""
 import csv
 import functools
@@ -15,6 +16,8 @@ import pathlib
 import statistics
 import subprocess
 import sys
+
+from evidence_campaign import INTERRUPTED, NOT_COMPLETE
 
 BASELINES = ("occlusion-aware,unobserved-voxel,rear-side-voxel,rear-side-entropy,proximity-count,average-entropy,"
              "area-factor,surface-edge,projection")
@@ -275,10 +278,15 @@ def hold(name, figures, all_figures):
 
 
 def run(program, name, wanted, folder):
-    command = [program, "--quiet", "compare", *wanted["options"], "--out", str(folder / name)]
+    """@return the exit status of evidence_campaign.py."""
+    script = pathlib.Path(__file__).with_name("evidence_campaign.py")
+    command = [str(script), program, str(folder / name), "compare", *wanted["options"]]
     print(f"  {name}: {' '.join(command)}", flush=True)
     with (folder / f"{name}.log").open("w") as log:
-        return subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False).returncode == 0
+        status = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
+    if status in INTERRUPTED:
+        sys.exit(status)
+    return status
 
 
 def main():
@@ -287,7 +295,9 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     known = campaigns()
     wanted = [] if names == ["table"] else names or list(known)
-    failed = [name for name in wanted if not run(program, name, known[name], folder)]
+    statuses = {name: run(program, name, known[name], folder) for name in wanted}
+    incomplete = [name for name, status in statuses.items() if status == NOT_COMPLETE]
+    failed = [name for name, status in statuses.items() if status not in (0, NOT_COMPLETE)]
     done = {name: Figures(folder / name, known[name]["strategies"]) for name in known
             if (folder / name / "runs.csv").exists()}
     lines = ["# The planner, measured", "",
@@ -306,8 +316,8 @@ def main():
         lines += [f"## {known[name]['title']}", "", "```sh", f"saccade compare {told} --out DIR", "```", "",
                   f"{figures.scenes} scenes.{note}", "", *table(shown), "", *held.lines, ""]
     pathlib.Path(document).write_text("\n".join(lines).rstrip() + "\n")
-    print(f"  {document}: {missed} missed; failed: {', '.join(failed) or 'none'}")
-    return 2 if failed else 1 if missed else 0
+    print(f"  {document}: {missed} missed; failed: {', '.join(failed) or 'none'}; not complete: {', '.join(incomplete) or 'none'}")
+    return 2 if failed else NOT_COMPLETE if incomplete else 1 if missed else 0
 
 
 if __name__ == "__main__":

@@ -254,6 +254,21 @@ class CampaignOnACluster(unittest.TestCase):
         self.assertEqual(done.stdout.count("no cluster answers now"), 2)
         self.assertFalse((self.folder / "calls").exists())
 
+    def planner(self, *more):
+        return subprocess.run([SCRIPTS / "evidence_planner.py", self.folder / "saccade", self.folder, self.folder / "document.md", *more],
+                              check=False, capture_output=True, text=True, env=self.environment, timeout=60)
+
+    def test_the_planner_is_submitted_campaign_by_campaign(self):
+        done = self.planner("clutter_arm", "rooms_flying")
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("failed: none; not complete: clutter_arm, rooms_flying", done.stdout)
+        self.assertTrue((self.folder / "rooms_flying.submitted.json").exists())
+        self.assertIn("--robot comau", (self.folder / "calls").read_text())
+        self.stand_in("saccade", "#!/bin/sh\nexit 1\n")
+        done = self.planner("rooms_flying")
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertIn("failed: rooms_flying", done.stdout)
+
     def test_the_headline_notes_its_jobs(self):
         done = subprocess.run([SCRIPTS / "evidence_headline.py", self.folder / "saccade", self.folder, self.folder / "document.md"],
                               check=False, capture_output=True, text=True, env=self.environment, timeout=60)
