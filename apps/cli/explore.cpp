@@ -244,6 +244,7 @@ class Explore final : public Command {
                          ": no surface is expected where nothing was seen yet");
     }
     SACCADE_CHECK(check_journal(explore_));
+    SACCADE_CHECK(spare_earlier_run(explore_, "run.json"));
     SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(explore_, &context.bar()));  // before anything is written
     SACCADE_CHECK(context.open_folder(explore_.resume ? "journal.json" : "run.json"));
     const RunFolder& out = *context.folder();

@@ -61,8 +61,6 @@ void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
   for (const Box& box : options.free_boxes()) require_near(box, "--free");
 }
 
-bool ExploreOptions::expects_surface() const { return surfels || run.strategy.name == surface_planner().name; }
-
 std::vector<Box> ExploreOptions::free_boxes() const {
   std::vector<Box> boxes = cell.free;
   for (const std::string& text : free) boxes.push_back(parse_box("--free", text));

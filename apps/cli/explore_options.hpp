@@ -44,7 +44,7 @@ struct ExploreOptions : RunOptions {
   bool force{false};
   std::string strategy{"surface"};  ///< as it was given
   SaliencyOptions saliency;
-  ComputeBackend backend{ComputeBackend::cpu};  ///< computes the expected surface
+  ComputeBackend backend{ComputeBackend::cpu};
 
   MessageOptions messages;
 
@@ -57,10 +57,10 @@ struct ExploreOptions : RunOptions {
   bool with_truth{false};  ///< the scene's objects are what a program's camera sees
   /// Whether the scene is what the camera sees.
   [[nodiscard]] bool knows_truth() const { return camera_command.empty() || with_truth; }
-  /// Whether views are chosen by the expected surface, parts of which a GPU can compute.
-  [[nodiscard]] bool expects_surface() const;
   /// A real robot or arm, which is not where a simulated one would be.
   [[nodiscard]] bool moves_real() const { return !robot_command.empty() || !joints_command.empty(); }
+  /// Whether programs see or move; what they did cannot be computed again.
+  [[nodiscard]] bool has_programs() const { return moves_real() || !camera_command.empty(); }
   /// Boxes that are known to be free from the beginning.
   [[nodiscard]] std::vector<Box> free_boxes() const;
 };

@@ -166,8 +166,7 @@ Status ExploreRun::run(const std::function<void()>& recorded, std::unique_ptr<me
   if (ended.ok()) return ended;
   if (ended.error().code != Errc::cancelled) {
     // A device failed: what it has shown since the last view is kept, too.
-    const bool has_programs = options_.moves_real() || !options_.camera_command.empty();
-    if (has_programs && !options_.dry_run) static_cast<void>(save_journal());
+    if (options_.has_programs() && !options_.dry_run) static_cast<void>(save_journal());
     return ended;
   }
   journal_.run.stopped_because = StopReason::cancelled;  // a program that hung when the user interrupted

@@ -314,6 +314,7 @@ Result<Outcome> update_cell(const UpdateOptions& given, Context& context) {
   UpdateOptions options = given;
   const Executor& executor = context.executor();
   if (options.cell_problem) return *options.cell_problem;
+  SACCADE_CHECK(spare_earlier_run(options, "update.json"));
   SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options, &context.bar()));
   if (arm && options.fuse_when == FuseWhen::motion) arm = slowed(*arm, kSpeedWhileFusing);
   SACCADE_TRY(const ExploreSetup subject, open_case(options, executor));

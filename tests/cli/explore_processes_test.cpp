@@ -53,6 +53,13 @@ TEST_F(ExploreProcesses, ACameraAndARobotThatAreProgramsBuildAMap) {
   EXPECT_EQ(map->grid.state(voxel_at({0.2, -0.2, 0.2}, 0.02)), VoxelState::empty);
   EXPECT_EQ(map->grid.state(voxel_at({0.2, -0.2, -0.005}, 0.02)), VoxelState::occupied);  // the plane
   EXPECT_EQ(report_in(run() / "report.html").at("record").at("result"), result);
+
+  // What a camera saw is not written over, not even by a rehearsal.
+  const Arguments programs{"--camera-command", camera_py(), "--robot-command", example("external_robot.py")};
+  for (const Arguments& more : {Arguments{}, Arguments{"--dry-run"}}) {
+    expect_failure(explore(programs + more), 3, "explore", {run().string(), "earlier run", "--force"});
+  }
+  EXPECT_EQ(report_in(run() / "report.html").at("record").at("result"), result);
 }
 
 TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
