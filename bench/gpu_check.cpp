@@ -244,6 +244,7 @@ int main(int argc, char** argv) {
   check.rates = need(bench::check_copies(*check.device, check.quick));
   bool equal = check_gains(check);
   equal = bench::check_gpu_frames(check) && equal;
+  equal = bench::check_gpu_tracking(check) && equal;
   equal = need(bench::check_gpu_choices(check)) && equal;
   equal = check_choices(check) && equal;
   equal = need(bench::check_gpu_steps(check)) && equal;

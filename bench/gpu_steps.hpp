@@ -9,6 +9,8 @@ namespace saccade::bench {
 
 /// Fusion, surface ray cast and alignment of single images.
 [[nodiscard]] bool check_gpu_frames(const GpuCheck& check);
+/// Reconstruction with the GPU tracking beside that of the CPU.
+[[nodiscard]] bool check_gpu_tracking(const GpuCheck& check);
 /// Choices of the surface strategy, one after the other.
 [[nodiscard]] Result<bool> check_gpu_choices(const GpuCheck& check);
 /// Expected surface, steps that stay on the GPU, and pages.
