@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 
 #include "saccade/core/names.hpp"
 #include "saccade/core/progress.hpp"
+#include "saccade/core/result.hpp"
 #include "saccade/cuda/gpu_tracker.hpp"
 #include "saccade/views/view_gain.hpp"
 

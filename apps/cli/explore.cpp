@@ -166,6 +166,7 @@ json result_json(const ExploreOptions& options, const ExploreSetup& subject, con
           {"voxel_size_m", options.run.voxel_size_m},
           {"truth_spacing_m", subject.truth ? json(subject.truth->spacing_m()) : json(nullptr)},
           {"dry_run", options.dry_run},
+          {"unrepeatable", options.has_programs() && !options.dry_run && run.scan.views + run.views.size() > 0},
           {"interrupted", run.stopped_because == StopReason::cancelled},
           {"initial", explored.scanned() ? scan_to_json(run.scan) : json(nullptr)},
           {"views", views_to_json(run.views)},
@@ -244,7 +245,6 @@ class Explore final : public Command {
                          ": no surface is expected where nothing was seen yet");
     }
     SACCADE_CHECK(check_journal(explore_));
-    SACCADE_CHECK(spare_earlier_run(explore_, "run.json"));
     SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(explore_, &context.bar()));  // before anything is written
     SACCADE_CHECK(context.open_folder(explore_.resume ? "journal.json" : "run.json"));
     const RunFolder& out = *context.folder();
@@ -289,6 +289,9 @@ class Explore final : public Command {
     SACCADE_TRY(const std::vector<SurfelDisc> unknown, unknown_surfels_of(explore_, run_->map(), context.executor()));
     Outcome outcome{.result = result_json(explore_, *subject_, *devices_, *run_, final, unknown.size()),
                     .text = summary_of(explore_, *run_, final)};
+    if (explore_.backend == ComputeBackend::cuda && outcome.result["compute"]["used"] == "cpu" && !run.views.empty()) {
+      outcome.warnings.push_back("note: the strategy " + explore_.run.strategy.name + " asked nothing of the GPU");
+    }
     if (const Status written = write_results(context, outcome.result, unknown); !written)
       return kept(written.error(), out);
     if (run.stopped_because == StopReason::cancelled) {

@@ -6,7 +6,6 @@
 #include "cell_options.hpp"
 #include "rehearsal.hpp"
 #include "robot_options.hpp"
-#include "saccade/io/files/json_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "summary.hpp"
@@ -81,18 +80,6 @@ Result<ExploreSetup> open_case(const ExploreOptions& options, const Executor& ex
     SACCADE_TRY(subject.truth, GroundTruth::build(*subject.rays, kTruthSpacing_m, executor));
   }
   return subject;
-}
-
-Status spare_earlier_run(const ExploreOptions& options, std::string_view document) {
-  if (!options.has_programs() || options.resume || options.force) return {};
-  std::error_code ignored;
-  if (!std::filesystem::exists(options.out / document, ignored)) return {};
-  const Result<nlohmann::json> earlier = read_json(options.out / document);
-  if (earlier.ok() && earlier->value("/result/dry_run"_json_pointer, false)) return {};
-  return Error{Errc::invalid_argument,
-               "the folder holds an earlier run, and what its camera saw cannot be computed again; give another --out, "
-               "or replace the run with --force",
-               options.out.string()};
 }
 
 Result<TsdfMap> map_to_begin_with(const ExploreOptions& options, const Scene& scene, const Executor& executor) {

@@ -29,10 +29,6 @@ struct ExploreSetup {
 /// The built-in scene or file.
 [[nodiscard]] Result<ExploreSetup> open_case(const ExploreOptions& options, const Executor& executor);
 
-/// Refuses to write over an earlier run, but for rehearsals, where programs see or move. @param document  its name in
-/// options.out
-[[nodiscard]] Status spare_earlier_run(const ExploreOptions& options, std::string_view document);
-
 /// The map that the options name, or one in which nothing is known, in the scene's workspace. invalid_argument for a
 /// map with another voxel size or workspace; errors of load_map.
 [[nodiscard]] Result<TsdfMap> map_to_begin_with(const ExploreOptions& options, const Scene& scene,

@@ -30,8 +30,8 @@ class ExploreRun final : private Recorder {
   [[nodiscard]] const TsdfSnapshot& map() const { return map_.content(); }
   [[nodiscard]] bool scanned() const { return journal_.scanned; }
   [[nodiscard]] const RunRecord& record() const { return journal_.run; }
-  /// Returns {wanted, used, problem} of run.json: who was to compute the expected surface, who did (cpu, cuda, or
-  /// mixed), and the last error of the GPU, else null.
+  /// Returns {wanted, used, problem} of run.json: who was to compute gains and the expected surface, who did (cpu,
+  /// cuda, or mixed), and the last error of the GPU, else null.
   [[nodiscard]] nlohmann::json compute_to_json() const;
   /// Measures of the map as it is now.
   [[nodiscard]] Measures measure_now() const;

@@ -48,6 +48,7 @@ struct FuseRun {
   std::optional<LoopReport> loops;
   std::optional<PagingStats> paging;
   std::unique_ptr<GpuTracker> gpu;  ///< null: the CPU tracks
+  bool gpu_worked{false};
   std::optional<Error> gpu_problem;
 };
 
@@ -79,6 +80,31 @@ Result<Reconstruction> make_reconstruction(FuseRun& run) {
   return Reconstruction::resume(std::move(map), IcpConfig{});
 }
 
+/// Opens the GPU, where frames are to be tracked on it.
+Status open_gpu(FuseRun& run, Reconstruction& reconstruction) {
+  if (run.tracking == TrackingMode::forced) {
+    if (run.options.backend != ComputeBackend::cuda) return {};
+    return Error{Errc::invalid_argument,
+                 "the frames are fused at their poses (--tracking forced), so that a GPU has nothing to track; give "
+                 "--tracking icp, or leave --backend out",
+                 "--backend"};
+  }
+  if (run.options.is_paged()) return {};
+  SACCADE_TRY(run.gpu, gpu_tracker_on(run.options.backend, reconstruction.map().config()));
+  reconstruction.track_on(run.gpu.get());
+  return {};
+}
+
+/// Gives the GPU back, and the map that it keeps; tells of what it could not do.
+void leave_gpu(FuseRun& run, Reconstruction& reconstruction) {
+  if (!run.gpu) return;
+  run.gpu_worked = run.gpu->answered() > 0;
+  run.gpu_problem = run.gpu->take_problem();
+  if (run.gpu_problem) run.context.bar().warn("the GPU failed: " + run.gpu_problem->message + "; the CPU went on");
+  reconstruction.track_on(nullptr);
+  run.gpu.reset();
+}
+
 /// Closes loops where that was not done beside the frames, and fuses again along the corrected poses.
 Status close_all(FuseRun& run, const RgbdFolderSource& source, Reconstruction& reconstruction) {
   const Executor& executor = run.context.executor();
@@ -103,6 +129,7 @@ Status fuse_all(FuseRun& run, RgbdFolderSource& source, Reconstruction& reconstr
   } else {
     run.record = fuse_frames(source, reconstruction, run.tracking, gaps, run.T_world_last, executor, bar);
   }
+  leave_gpu(run, reconstruction);
   run.context.lap("frames");
   if (run.record.fused.empty()) return {};
   if (run.record.failure || run.options.loops == LoopMode::off || interrupted()) return {};
@@ -110,25 +137,6 @@ Status fuse_all(FuseRun& run, RgbdFolderSource& source, Reconstruction& reconstr
   if (!closed) run.record.failure = closed.error();  // reading a frame again, mostly; the map stands
   run.context.lap("loops");
   return {};
-}
-
-/// Opens the GPU, where frames are to be tracked on it.
-Status open_gpu(FuseRun& run, Reconstruction& reconstruction) {
-  if (run.tracking == TrackingMode::forced) {
-    if (run.options.backend != ComputeBackend::cuda) return {};
-    return Error{Errc::invalid_argument, "a GPU tracks frames, which --tracking forced does not: leave it out",
-                 "--backend"};
-  }
-  if (run.options.is_paged()) return {};
-  SACCADE_TRY(run.gpu, gpu_tracker_on(run.options.backend, reconstruction.map().config()));
-  reconstruction.track_on(run.gpu.get());
-  return {};
-}
-
-/// Tells of what the GPU could not do.
-void note_gpu_problem(FuseRun& run) {
-  if (run.gpu) run.gpu_problem = run.gpu->take_problem();
-  if (run.gpu_problem) run.context.bar().warn("the GPU failed: " + run.gpu_problem->message + "; the CPU went on");
 }
 
 Status check_loops(const FuseRun& run) {
@@ -167,7 +175,7 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
               {"camera", camera_to_json(run.camera)},
               {"intrinsics_from", run.info.intrinsics_from},
               {"tracking", to_string(run.tracking)},
-              {"compute", compute_json(run.options.backend, run.gpu && run.gpu->answered() > 0, run.gpu_problem)},
+              {"compute", compute_json(run.options.backend, run.gpu_worked, run.gpu_problem)},
               {"fill_gaps_px", record.gaps.max_gap_px},
               {"interrupted", interrupted()},
               {"frames", record.fused.size()},
@@ -322,7 +330,7 @@ class Fuse final : public Command {
   }
 
   [[nodiscard]] Result<Outcome> run(Context& context) override {
-    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, {}};
+    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, {}, 0, {}, {}, {}, false, {}};
     SACCADE_TRY(const auto source, open_frames(run));
     SACCADE_TRY(Reconstruction reconstruction, make_reconstruction(run));
     SACCADE_CHECK(check_loops(run));
@@ -331,7 +339,6 @@ class Fuse final : public Command {
     context.lap("open");
     SACCADE_CHECK(page_map(reconstruction.map(), fuse_, context.folder()->path()));
     SACCADE_CHECK(fuse_all(run, *source, reconstruction));
-    note_gpu_problem(run);
     run.paging = reconstruction.map().paging();
     // The steps below bring in what they need, one view or block after the other.
     const Status rests = reconstruction.map().page_out_all(context.executor());

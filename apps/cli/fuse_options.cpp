@@ -24,7 +24,7 @@ void declare_fuse(Options& declared, FuseOptions& options) {
   declared.choice("--loops", options.loops, kLoopModeNames,
                   "close loops of tracked poses, and fuse again along the corrected ones: after the run, or beside it");
   declared.choice("--backend", options.backend, kComputeBackendNames,
-                  "where frames are tracked: the map's ray cast, and ICP but for --tracking rgbd; poses are the same");
+                  "where frames are tracked: the map's ray cast, and ICP but for --tracking rgbd; poses stay the same");
   declared.flag("--no-mesh{false}", options.write_mesh, "do not extract the mesh");
   declared.flag("--no-pictures{false}", options.write_pictures, "draw no pictures");
 }

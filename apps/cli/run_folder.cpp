@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/json_io.hpp"
 #include "saccade/io/files/leftovers.hpp"
 
 namespace saccade::cli {
@@ -32,6 +33,16 @@ bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_
     if (std::find(own_files.begin(), own_files.end(), name) == own_files.end()) return false;
   }
   return true;
+}
+
+/// Tells whether a document is of a run whose frames no command brings back: result.unrepeatable.
+bool is_unrepeatable(const fs::path& document) {
+  std::error_code ignored;
+  if (document.extension() != ".json" || !fs::is_regular_file(document, ignored)) return false;
+  const Result<nlohmann::json> read = read_json(document);
+  if (!read.ok() || !read->is_object()) return false;
+  const auto result = read->find("result");
+  return result != read->end() && result->is_object() && result->value("unrepeatable", nlohmann::json(false)) == true;
 }
 
 /// Removes the unfinished files of runs that were killed. No other run writes here: the caller holds the lock.
@@ -66,6 +77,13 @@ Result<RunFolder> RunFolder::open(const fs::path& path, std::span<const std::str
     return Error{Errc::invalid_argument,
                  "the folder holds other files; choose another one, or pass --force to write among them",
                  path.string()};
+  }
+  if (there && !force && is_unrepeatable(path / marker)) {
+    return Error{
+        Errc::invalid_argument,
+        "the folder holds a run of a real camera or robot, which no command brings back; choose another one, or "
+        "pass --force to replace it",
+        path.string()};
   }
   if (!there && !fs::create_directories(path, code) && code) {
     return Error{Errc::io_failure, "cannot make the folder: " + code.message(), path.string()};

@@ -16,9 +16,10 @@ namespace saccade::cli {
 class RunFolder {
  public:
   /// Makes the folder, or takes one that is empty, holds an earlier run (nothing but `own_files`, or a JSON document
-  /// `marker`) or is forced. A write of some size is tried, so that a folder that cannot be written and a full disk
+  /// `marker`) or is forced. A document that says that its run cannot be repeated is not written over unless forced. A
+  /// write of some size is tried, so that a folder that cannot be written and a full disk
   /// show before the work. Half-written files that a killed run left are removed. The folder is locked while this
-  /// lives. invalid_argument for foreign content, or when another run holds the lock; io_failure.
+  /// lives. invalid_argument for foreign content, for such a run, or when another run holds the lock; io_failure.
   [[nodiscard]] static Result<RunFolder> open(const std::filesystem::path& path,
                                               std::span<const std::string_view> own_files, std::string_view marker,
                                               bool force);

@@ -144,6 +144,7 @@ class CellUpdate {
             {"out", options_.out.string()},
             {"method", options_.method->name},
             {"dry_run", options_.dry_run},
+            {"unrepeatable", options_.has_programs() && !options_.dry_run && has_scan_},
             {"scanned", has_scan_},
             {"initial", scan_to_json(scan_)},
             {"tasks", tasks_}};
@@ -314,11 +315,10 @@ Result<Outcome> update_cell(const UpdateOptions& given, Context& context) {
   UpdateOptions options = given;
   const Executor& executor = context.executor();
   if (options.cell_problem) return *options.cell_problem;
-  SACCADE_CHECK(spare_earlier_run(options, "update.json"));
   SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options, &context.bar()));
   if (arm && options.fuse_when == FuseWhen::motion) arm = slowed(*arm, kSpeedWhileFusing);
   SACCADE_TRY(const ExploreSetup subject, open_case(options, executor));
-  SACCADE_CHECK(context.open_folder());
+  SACCADE_CHECK(context.open_folder(options.resume ? "map.sacmap" : ""));
   const RunFolder& out = *context.folder();
   std::optional<json> before;
   if (options.resume) {

@@ -54,12 +54,18 @@ TEST_F(ExploreProcesses, ACameraAndARobotThatAreProgramsBuildAMap) {
   EXPECT_EQ(map->grid.state(voxel_at({0.2, -0.2, -0.005}, 0.02)), VoxelState::occupied);  // the plane
   EXPECT_EQ(report_in(run() / "report.html").at("record").at("result"), result);
 
-  // What a camera saw is not written over, not even by a rehearsal.
+  // No command writes over the frames of a program, unless told so.
+  const Arguments simulated{"explore", "bottle",  "--robot", "free",        "--max-views",
+                            "0",       "--quiet", "--out",   run().string()};
   const Arguments programs{"--camera-command", camera_py(), "--robot-command", example("external_robot.py")};
-  for (const Arguments& more : {Arguments{}, Arguments{"--dry-run"}}) {
-    expect_failure(explore(programs + more), 3, "explore", {run().string(), "earlier run", "--force"});
+  for (const Outcome& again : {run_program(simulated), explore(programs), explore(programs + Arguments{"--dry-run"})}) {
+    expect_failure(again, 3, "explore", {run().string(), "real camera", "--force"});
   }
   EXPECT_EQ(report_in(run() / "report.html").at("record").at("result"), result);
+  for (const char* other : {"[]", "{\"result\": [1]}", "{\"result\": {\"unrepeatable\": \"x\"}}", "{"}) {
+    std::ofstream{run() / "run.json"} << other;
+    EXPECT_EQ(run_program(simulated).status, 0) << other;
+  }
 }
 
 TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {

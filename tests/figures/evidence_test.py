@@ -261,7 +261,8 @@ class CampaignOnACluster(unittest.TestCase):
     def test_the_planner_is_submitted_campaign_by_campaign(self):
         done = self.planner("clutter_arm", "rooms_flying")
         self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
-        self.assertIn("failed: none; not complete: clutter_arm, rooms_flying", done.stdout)
+        self.assertIn("document.md stays as it is; failed: none; not complete: clutter_arm, rooms_flying", done.stdout)
+        self.assertFalse((self.folder / "document.md").exists())
         self.assertTrue((self.folder / "rooms_flying.submitted.json").exists())
         self.assertIn("--robot comau", (self.folder / "calls").read_text())
         self.stand_in("saccade", "#!/bin/sh\nexit 1\n")

@@ -18,14 +18,17 @@ Result<GpuTracker> GpuTracker::create_emulated(const TsdfConfig& config, const E
   return GpuTracker{std::move(map), std::move(aligner)};
 }
 
-/// Takes note of what the device did or could not do. What the caller did wrong is neither.
+/// Takes note of what the device did or could not do, of its loss once. What the caller asked wrongly is neither.
 template <class T>
 Result<T> GpuTracker::noted(Result<T> result) {
   if (result.ok()) {
     ++answered_;
-  } else if (result.error().code != Errc::invalid_argument) {
-    problem_ = result.error();
+    return result;
   }
+  const Errc code = result.error().code;
+  if (code == Errc::invalid_argument || code == Errc::unsupported || told_loss_) return result;
+  problem_ = result.error();
+  told_loss_ = map_.is_lost();
   return result;
 }
 
@@ -40,6 +43,7 @@ Result<SurfaceView> GpuTracker::raycast(const TsdfSnapshot& map, const PinholeCa
 
 Result<IcpResult> GpuTracker::align(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,
                                     const Pose& T_model_camera_start, const IcpConfig& config) {
+  if (map_.is_lost()) return Error{Errc::unavailable, "the GPU is lost", "cuda"};
   return noted(aligner_.align(measured, model, camera, T_model_camera_start, config));
 }
 

@@ -64,7 +64,8 @@ class Reconstruction {
                                             const std::optional<Pose>& hint, const Executor& executor);
 
   /// Lets a device cast the map, and align frames in all modes but rgbd, with the same results; nullptr: the CPU does.
-  /// The device must outlive its use here.
+  /// The device must outlive its use here. It may keep the map's bricks as of the last frame, and the CPU may have to
+  /// do the work while sectors are paged out.
   void track_on(TrackingDevice* device) { device_ = device; }
 
   /// Ignores frames until resume(). The map persists.

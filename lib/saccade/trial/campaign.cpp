@@ -176,11 +176,19 @@ Status read_views(SqliteStatement& row, std::int64_t run, std::vector<ViewRecord
   }
 }
 
+struct RunRow {
+  std::int64_t id{0};
+  std::int64_t views{0};  ///< as the file says; those that follow count
+};
+
+/// Makes room for the views of a run, which spares moving them.
+void make_room(const RunRow& row, CampaignEntry& entry) {
+  entry.run.views.reserve(static_cast<std::size_t>(std::clamp<std::int64_t>(row.views, 0, kMostReserved)));
+}
+
 /// Reads the run of the statement's row, but for its views; the key also where the rest cannot be read.
-Status run_of(SqliteStatement& row, std::int64_t& id, CampaignEntry& entry) {
-  id = row.integer();
-  // The views that follow count, not what is said of them; this only spares moving them.
-  entry.run.views.reserve(static_cast<std::size_t>(std::clamp<std::int64_t>(row.integer(), 0, kMostReserved)));
+Status run_of(SqliteStatement& row, RunRow& stored, CampaignEntry& entry) {
+  stored = {row.integer(), row.integer()};
   entry.key.scene = row.text();
   entry.key.scene_hash = row.text();
   entry.key.strategy = row.text();
@@ -211,10 +219,10 @@ Error run_error(Error error, const CampaignKey& key, const std::filesystem::path
 
 /// @param views  of prepare_views()
 Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row, SqliteStatement& views) {
-  std::int64_t id = 0;
+  RunRow stored;
   CampaignEntry entry;
-  if (const Status read = run_of(row, id, entry); !read) return run_error(read.error(), entry.key, file.path());
-  if (const Status read = read_views(views, id, entry.run.views); !read) {
+  if (const Status read = run_of(row, stored, entry); !read) return run_error(read.error(), entry.key, file.path());
+  if (const Status read = read_views(views, stored.id, entry.run.views); !read) {
     return run_error(read.error(), entry.key, file.path());
   }
   return entry;
@@ -307,12 +315,13 @@ Result<std::vector<CampaignEntry>> Campaign::figures(const std::function<bool(co
   while (true) {
     SACCADE_TRY(const bool more, row.step());
     if (!more) return runs;
-    std::int64_t id = 0;
+    RunRow stored;
     CampaignEntry entry;
-    if (const Status read = run_of(row, id, entry); !read) return run_error(read.error(), entry.key, path());
+    if (const Status read = run_of(row, stored, entry); !read) return run_error(read.error(), entry.key, path());
     const bool chosen = wanted(entry.key);
-    while (has_view && of_view <= id) {
-      if (chosen && of_view == id) {
+    if (chosen) make_room(stored, entry);
+    while (has_view && of_view <= stored.id) {
+      if (chosen && of_view == stored.id) {
         const Status read = read_view(view, entry.run.views.emplace_back());
         if (!read) return run_error(read.error(), entry.key, path());
       }

@@ -65,7 +65,8 @@ using AcceptRun = std::function<Result<MergeChoice>(const StoredRun& run)>;
 
 /// Open campaign file. A run is stored in one transaction that reaches the disk before add() returns: it survives any
 /// later end of the program, and an unfinished run leaves no trace. Several processes may use one file at once; each
-/// waits up to ten seconds for the others. One thread. Errors carry the file's path: those of SqliteFile.
+/// waits up to ten seconds for the others. One thread at a time, const calls included. Errors carry the file's path:
+/// those of SqliteFile.
 class Campaign {
  public:
   /// Opens or creates the file, and tests whether it can be written. Upgrades a file of an older Saccade: its runs

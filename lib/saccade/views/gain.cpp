@@ -138,7 +138,6 @@ Result<std::vector<double>> RayGain::evaluate(const PlanningContext& context, co
 Result<RankedViews> RayGain::by_rays(const PlanningContext& context, const RegionOfInterest& region,
                                      std::span<const Pose> T_world_camera, std::size_t count) {
   if (count >= T_world_camera.size()) return by_evaluation(*this, context, region, T_world_camera);
-  if (const auto gains = on_device(context, region, T_world_camera)) return in_order(T_world_camera, *gains);
   RankedViews ranked;
   std::vector<Pose> others;
   for (const Pose& pose : T_world_camera) {
@@ -151,10 +150,15 @@ Result<RankedViews> RayGain::by_rays(const PlanningContext& context, const Regio
   ranked.evaluated = T_world_camera.size();
   if (!ranked.views.empty()) SACCADE_CHECK(tell_gains(*this, context, region, ranked.views));
   if (others.empty()) return ranked;
-  SACCADE_TRY(const BestViews best, best_views(context.map, region.bounds, others, count, config_, context.executor));
-  ranked.complete = best.views.size() == others.size();
   std::vector<RankedView> views;
-  for (const OrderedView& view : best.views) views.push_back({view.T_world_camera, static_cast<double>(view.gain)});
+  if (const auto gains = on_device(context, region, others)) {
+    views = in_order(others, *gains).views;
+    views.resize(std::min(count, views.size()));
+  } else {
+    SACCADE_TRY(const BestViews best, best_views(context.map, region.bounds, others, count, config_, context.executor));
+    for (const OrderedView& view : best.views) views.push_back({view.T_world_camera, static_cast<double>(view.gain)});
+  }
+  ranked.complete = views.size() == others.size();
   ranked.views.insert(ranked.views.begin(), views.begin(), views.end());
   order_by_gain(ranked.views);
   return ranked;

@@ -7,6 +7,8 @@
 
 #include <numbers>
 
+#include "failing_compute.hpp"
+#include "saccade/cuda/internal/gpu_map_impl.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/reconstruction.hpp"
 #include "support/parallel_backend.hpp"
@@ -32,7 +34,8 @@ struct Tracked {
 };
 
 /// Fuses frames of a camera that moves around the table. @param device nullptr: the CPU tracks.
-Tracked tracked(TrackingMode mode, TrackingDevice* device) {
+/// @param before  called before each frame, with its number
+Tracked tracked(TrackingMode mode, TrackingDevice* device, const std::function<void(int)>& before = {}) {
   const Executor executor = Executor::with_threads(2, test::kParallelBackend);
   ReconstructionConfig config;
   config.map.voxel_size_m = 0.012;
@@ -40,6 +43,7 @@ Tracked tracked(TrackingMode mode, TrackingDevice* device) {
   reconstruction.track_on(device);
   Tracked result;
   for (int i = 0; i < 5; ++i) {
+    if (before) before(i);
     const double turn = 0.02 * i * std::numbers::pi;
     const Pose T_world_true =
         look_at({0.6 * std::cos(turn), 0.6 * std::sin(turn), 0.5}, {0.0, 0.0, 0.05}, Eigen::Vector3d::UnitZ());
@@ -72,6 +76,23 @@ TEST(GpuTracker, TracksToTheBit) {
     EXPECT_GE(gpu.answered(), mode == TrackingMode::rgbd ? 4U : 8U);
     EXPECT_FALSE(gpu.take_problem());
   }
+}
+
+TEST(GpuTracker, ADeviceLostInTheMiddleIsToldOnce) {
+  const Tracked expected = tracked(TrackingMode::icp, nullptr);
+  const auto faults = std::make_shared<test::Faults>();
+  faults->times = 0;
+  GpuTracker gpu{internal::cuda::GpuMapMaker::make(expected.map.config, std::make_unique<test::FailingCompute>(faults)),
+                 GpuAligner::create_emulated({}).value()};
+  std::vector<int> told;
+  const auto before = [&](int frame) {
+    faults->lost = frame >= 3;
+    if (gpu.take_problem()) told.push_back(frame);
+  };
+  expect_same(tracked(TrackingMode::icp, &gpu, before), expected);
+  EXPECT_EQ(gpu.answered(), 4U) << "two frames";
+  EXPECT_EQ(told, std::vector{4});
+  EXPECT_FALSE(gpu.take_problem());
 }
 
 TEST(GpuTracker, WithoutRoomTheCpuTracks) {
