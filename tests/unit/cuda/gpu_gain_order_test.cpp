@@ -62,7 +62,7 @@ TEST(GpuGainOrder, IsThatOfTheCpu) {
     expect_same(RayGain{config, Trust::blind}.best(context, region, poses, 2).value(), expected);
     EXPECT_TRUE(gpu.take_problem());
   }
-  EXPECT_GT(scoring, 6);
+  EXPECT_GE(scoring, 6);
 }
 
 }  // namespace
