@@ -181,7 +181,8 @@ def section(kind, folder, seeds):
     count, scenes = len(figures.runs), len({scene for scene, _ in whole})
     planned = SCENES * seeds * len(STRATEGIES)
     held = hold(figures, so_far=count < planned)
-    lines += [f"{count:,} of {planned:,} runs: {scenes} scenes, {len(whole) / scenes:.1f} seeds each.", "",
+    names = ", ".join(sorted({seed for _, seed in whole}, key=int))
+    lines += [f"{count:,} of {planned:,} runs: {scenes} scenes, {len(whole) / scenes:.1f} seeds each. Seeds: {names}.", "",
               *means(figures), "", *differences(figures), "", *held.lines, ""]
     return lines, held.missed
 

@@ -211,9 +211,10 @@ Result<std::vector<SliceProgress>> progress_of(const Comparison& comparison, con
     for (std::size_t index = 0; index < count; ++index) {
       const Slice slice{index, count};
       const SliceRuns runs = counter.of(slice);
-      slices.push_back({.record = read_shard_record(shard_folder(options.out, slice), slice),
-                        .planned = runs.planned,
-                        .done = runs.done});
+      ShardRecord record = read_shard_record(shard_folder(options.out, slice), slice);
+      // Runs were added to the comparison, or its shard cannot be read.
+      if (record.state == ShardState::done && runs.done < runs.planned) record.state = ShardState::waiting;
+      slices.push_back({.record = std::move(record), .planned = runs.planned, .done = runs.done});
     }
   }
   return slices;

@@ -159,7 +159,8 @@ Result<SliceJob> job_of(const Context& context, const Comparison& comparison, co
   job.name = job_name(job.out);
   job.options = options.machines.job;
   const SliceCounter counter{plan, options.equal_views};
-  job.slices = job.options.tasks == 0 ? std::clamp<std::size_t>(counter.parts(), 1, kMostTasks) : job.options.tasks;
+  const std::size_t most = job.options.tasks == 0 ? kMostTasks : job.options.tasks;
+  job.slices = std::clamp<std::size_t>(counter.parts(), 1, most);
   job.wanted = slices_to_do(counter, job.slices);
   return job;
 }

@@ -26,18 +26,22 @@ inline constexpr auto kComputeBackendNames = make_names<ComputeBackend>(
 
 /// Opens the GPU for views of a map with this configuration; null: the CPU does all. Answers unavailable, with the
 /// reason, where the GPU was asked for and none is there.
-[[nodiscard]] Result<std::unique_ptr<GpuMap>> gpu_map_on(ComputeBackend backend, const TsdfConfig& config);
+/// @param problem  of a GPU that is there and cannot be used, where another back end will do
+[[nodiscard]] Result<std::unique_ptr<GpuMap>> gpu_map_on(ComputeBackend backend, const TsdfConfig& config,
+                                                         std::optional<Error>& problem);
 /// As gpu_map_on, for tracking.
-[[nodiscard]] Result<std::unique_ptr<GpuTracker>> gpu_tracker_on(ComputeBackend backend, const TsdfConfig& config);
+[[nodiscard]] Result<std::unique_ptr<GpuTracker>> gpu_tracker_on(ComputeBackend backend, const TsdfConfig& config,
+                                                                 std::optional<Error>& problem);
 
 /// `compute` of a result: what was wanted, what did the work, and the GPU's last problem.
 /// @param gpu_worked  the GPU computed something
 [[nodiscard]] nlohmann::json compute_json(ComputeBackend wanted, bool gpu_worked, const std::optional<Error>& problem);
 
 /// Computes the gains of saccade::evaluate_views. Errors are those of the back end that was asked for.
+/// @param problem  of a GPU that failed, where the CPU computed the gains instead
 [[nodiscard]] Result<GainResult> evaluate_views_on(ComputeBackend backend, const TsdfSnapshot& map,
                                                    const Region& region, std::span<const Pose> T_world_camera,
                                                    const GainConfig& config, const Executor& executor,
-                                                   const Progress& progress);
+                                                   const Progress& progress, std::optional<Error>& problem);
 
 }  // namespace saccade::cli

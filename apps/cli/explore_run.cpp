@@ -178,7 +178,8 @@ Status ExploreRun::run_to_end() {
   const CancelOnInterrupt guard{cancel};
   const Approve approve = [this](const RankedView& view) { return ask(view); };
   Recorders recorders{messages_.get(), this};  // the first sees what a view was chosen from
-  SACCADE_TRY(gpu_, gpu_map_on(options_.backend, map_.config()));
+  SACCADE_TRY(gpu_, gpu_map_on(options_.backend, map_.config(), gpu_problem_));
+  if (gpu_problem_) progress_.warn("the GPU cannot be used: " + gpu_problem_->message + "; the CPU does its work");
   ExplorerParts parts{map_, devices_.camera(), devices_.robot(), executor_, &recorders, nullptr, approve, &cancel};
   parts.device = gpu_.get();
   parts.model = options_.surfels.get();

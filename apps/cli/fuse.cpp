@@ -90,7 +90,10 @@ Status open_gpu(FuseRun& run, Reconstruction& reconstruction) {
                  "--backend"};
   }
   if (run.options.is_paged()) return {};
-  SACCADE_TRY(run.gpu, gpu_tracker_on(run.options.backend, reconstruction.map().config()));
+  SACCADE_TRY(run.gpu, gpu_tracker_on(run.options.backend, reconstruction.map().config(), run.gpu_problem));
+  if (run.gpu_problem) {
+    run.context.bar().warn("the GPU cannot be used: " + run.gpu_problem->message + "; the CPU does its work");
+  }
   reconstruction.track_on(run.gpu.get());
   return {};
 }

@@ -250,8 +250,11 @@ class Nbv final : public Command {
     context.stage("loading the map");
     SACCADE_TRY(const TsdfSnapshot map, prepare_map(nbv_, context.executor()));
     context.lap("load");
-    SACCADE_TRY(const GainResult gains, evaluate_views_on(nbv_.backend, map, nbv_.region(), candidates.poses, nbv_.gain,
-                                                          context.executor(), context.stage("evaluating views")));
+    std::optional<Error> problem;
+    SACCADE_TRY(const GainResult gains,
+                evaluate_views_on(nbv_.backend, map, nbv_.region(), candidates.poses, nbv_.gain, context.executor(),
+                                  context.stage("evaluating views"), problem));
+    if (problem) context.bar().warn("the GPU failed: " + problem->message + "; the CPU did its work");
     const std::vector<OrderedView> ranked = order_views(gains.gains, candidates.poses);
     context.lap("evaluate");
     const std::size_t shown = nbv_.all ? ranked.size() : std::min(nbv_.top, ranked.size());

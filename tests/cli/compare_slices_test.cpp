@@ -97,6 +97,11 @@ TEST(CompareSlices, AKilledSliceIsTakenAgainAndADuplicateIsRefused) {
   const Outcome merged = run_program(compare(out, wanted + Arguments{"--merge", "--quiet", "--json", "-"}));
   ASSERT_EQ(merged.status, 0) << merged.err;
   EXPECT_EQ(merged.json().at("result").at("slices")[0].at("tries"), 2);
+  const Outcome more = run_program(compare(out, {"--seeds", "1-8", "--jobs", "1", "--status", "--json", "-"}));
+  for (const nlohmann::json& one : more.json().at("result").at("slices")) {
+    EXPECT_EQ(one.at("state"), "waiting") << one;  // it was done before seeds were added
+    EXPECT_LT(one.at("done"), one.at("planned"));
+  }
   ASSERT_EQ(run_program(compare(folder / "whole", wanted + Arguments{"--quiet"})).status, 0);
   EXPECT_EQ(bits_of(out), bits_of(folder / "whole"));
 }
@@ -275,6 +280,8 @@ TEST(CompareSlices, TheScriptForSlurmIsShown) {
   for (const char* part : {"--dry-run", "--slurm", "--cpus ", "--tasks"})
     EXPECT_EQ(shown.out.find(part), std::string::npos) << part << '\n' << shown.out;
   EXPECT_FALSE(fs::exists(out));
+  const Outcome fewer = run_program(compare(out, {"--seeds", "1", "--slurm", "--dry-run", "--tasks", "2000"}));
+  EXPECT_NE(fewer.out.find("#SBATCH --array=0-1\n"), std::string::npos) << fewer.out;  // there are two runs
   const auto refused = [&](const Arguments& more, const Arguments& parts) {
     expect_failure(run_program(compare(out, more)), 2, "compare", parts);
   };

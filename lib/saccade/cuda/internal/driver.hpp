@@ -26,7 +26,7 @@ enum class DriverFault {
 };
 [[nodiscard]] DriverFault fault_of(DriverResult result);
 
-/// Functions of libcuda.so.1 by their names there. The parameters are those of the driver API, versions 4.0 to 13.
+/// Functions of libcuda.so.1 by their names there. The parameters are those of the driver API, versions 11.0 to 13.
 struct Driver {
   DriverResult (*cuInit)(unsigned flags);
   DriverResult (*cuDriverGetVersion)(int* version);
