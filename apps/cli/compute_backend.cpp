@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compute_backend.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "saccade/cuda/device.hpp"
 
 namespace saccade::cli {

@@ -41,7 +41,8 @@ std::vector<ExpectedEntry> expected_entries() {
 std::vector<std::string> problems_of(std::string_view text) {
   test::PtxModule module = test::read_ptx(text);
   std::vector<std::string> problems = std::move(module.problems);
-  if (!module.version.starts_with("6.")) problems.push_back("version " + module.version);  // of drivers for CUDA 11 on
+  if (!module.version.starts_with("6."))
+    problems.push_back("version " + module.version);  // newer ones need newer drivers
   if (module.target != ptx_target()) problems.push_back("target " + module.target);
   if (module.address_size != "64") problems.push_back("addresses of " + module.address_size + " bits");
   const std::vector<ExpectedEntry> expected = expected_entries();
