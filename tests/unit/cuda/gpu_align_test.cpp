@@ -8,29 +8,20 @@
 
 #include "ordered_device.hpp"
 #include "saccade/cuda/internal/gpu_alignment.hpp"
-#include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/internal/icp_kernels.hpp"
 #include "saccade/tracking/internal/pair_math.hpp"
 #include "support/parallel_backend.hpp"
+#include "things_on_a_table.hpp"
 
 namespace saccade {
 namespace {
-
-AnalyticScene things_on_a_table() {
-  AnalyticScene scene;
-  scene.objects = {{"table", HalfSpace{}},
-                   {"box", Box{{-0.2, -0.1, 0.0}, {-0.05, 0.08, 0.15}}},
-                   {"ball", Sphere{{0.12, 0.05, 0.07}, 0.07}},
-                   {"can", Cylinder{{0.05, -0.18, 0.0}, {0.05, -0.18, 0.12}, 0.04}}};
-  return scene;
-}
 
 PinholeCamera camera_of(int width, int height) {
   return {width, height, 0.9 * width, 0.9 * width, 0.5 * (width - 1), 0.5 * (height - 1), 0.3, 3.0};
 }
 
 PointImage points_at(const PinholeCamera& camera, const Pose& T_world_camera) {
-  return to_points(render(things_on_a_table(), camera, T_world_camera, {}).value().depth, camera, {});
+  return to_points(render(test::things_on_a_table(), camera, T_world_camera, {}).value().depth, camera, {});
 }
 
 void expect_equal(const Result<IcpResult>& result, const IcpResult& expected) {

@@ -9,23 +9,14 @@
 
 #include "failing_compute.hpp"
 #include "saccade/cuda/internal/gpu_map_impl.hpp"
-#include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/reconstruction.hpp"
 #include "support/parallel_backend.hpp"
+#include "things_on_a_table.hpp"
 
 namespace saccade {
 namespace {
 
 const PinholeCamera kSmallImage{128, 96, 110.0, 110.0, 63.5, 47.5, 0.4, 2.5};
-
-AnalyticScene tracked_scene() {
-  AnalyticScene scene;
-  scene.objects = {{"table", HalfSpace{}},
-                   {"box", Box{{-0.2, -0.1, 0.0}, {-0.05, 0.08, 0.15}}},
-                   {"ball", Sphere{{0.12, 0.05, 0.07}, 0.07}},
-                   {"can", Cylinder{{0.05, -0.18, 0.0}, {0.05, -0.18, 0.12}, 0.04}}};
-  return scene;
-}
 
 struct Tracked {
   std::vector<Pose> T_world_camera;
@@ -47,7 +38,7 @@ Tracked tracked(TrackingMode mode, TrackingDevice* device, const std::function<v
     const double turn = 0.02 * i * std::numbers::pi;
     const Pose T_world_true =
         look_at({0.6 * std::cos(turn), 0.6 * std::sin(turn), 0.5}, {0.0, 0.0, 0.05}, Eigen::Vector3d::UnitZ());
-    RenderedFrame seen = render(tracked_scene(), kSmallImage, T_world_true, executor).value();
+    RenderedFrame seen = render(test::things_on_a_table(), kSmallImage, T_world_true, executor).value();
     Frame frame;
     frame.depth = std::move(seen.depth);
     const FrameReport report = reconstruction.process(frame, kSmallImage, mode, T_world_true, executor).value();
