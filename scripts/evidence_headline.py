@@ -3,11 +3,14 @@
 """The headline figures: a hundred scenes, ten seeds, five strategies: evidence_headline.py PROGRAM FOLDER DOCUMENT [table].
 
 Two campaigns of 5,000 runs, each in a folder of its own under FOLDER, with its page (index.html). They grow seed by
-seed, so that an interrupted campaign has whole seeds of all scenes; the same call goes on. Where a cluster answers
+seed, so that an interrupted campaign has whole seeds of all scenes; the same call goes on. A seed that is whole is recorded
+beside DOCUMENT (evidence_records.py) and is not run again, on no machine; "check" in place of "table" runs the first and the last
+scene of each record again, and compares. Where a cluster answers
 (`sinfo`), a campaign is submitted to Slurm as a job array, and a later call merges what its tasks have done; as long as no
 cluster answers that call, nothing runs. With "table", nothing runs. DOCUMENT gets the figures of the runs that are there, and
 says how many they are.
-Exit status 0: complete, and all that is held to was met; 1: something was missed; 2: a campaign failed; 3: not complete.
+Exit status 0: complete, and all that is held to was met; 1: something was missed; 2: a campaign failed, or a record differs; 3: not
+complete.
 SACCADE_HEADLINE_SEEDS: how many seeds (10). SACCADE_SLURM=off: runs here although a cluster answers.
 SACCADE_SLURM_OPTIONS: further options of `compare --slurm`, as "--partition long --time 2:00:00"."""
 import json
@@ -23,7 +26,9 @@ from evidence_campaign import (INTERRUPTED, STILL_QUEUED, awaits_cluster, cluste
                                jobs_in, may_be_submitted, note_submission, print_awaiting, print_failed, slurm_options,
                                submitted_file)
 from evidence_planner import Figures, Held, calibration, student_t
+from evidence_records import Records
 
+FIRST_SCENE = 201
 SCENES = 100
 SEEDS = 10
 STRATEGIES = ("surface", "oracle", "sphere", "standard", "attention")
@@ -32,9 +37,9 @@ FIGURES = (("coverage", "coverage, %", 100, 1), ("coverage_area", "its area, %",
            ("unknown_near_objects", "unknown near objects", 1, 0), ("views", "views", 1, 2))
 
 
-def options(kind, seeds):
-    return ["--scenes", f"clutter:201-{200 + SCENES}", "--strategies", ",".join(STRATEGIES), "--seeds",
-            f"1-{seeds}" if seeds > 1 else "1", "--max-views", "5", *CAMPAIGNS[kind][1]]
+def options(kind, seeds, scenes=f"clutter:{FIRST_SCENE}-{FIRST_SCENE + SCENES - 1}"):
+    return ["--scenes", scenes, "--strategies", ",".join(STRATEGIES), "--seeds", ",".join(map(str, seeds)), "--max-views", "5",
+            *CAMPAIGNS[kind][1]]
 
 
 def compare(program, folder, arguments):
@@ -52,25 +57,23 @@ def compare(program, folder, arguments):
     return status == 0, said
 
 
-def run_here(program, folder, kind, seeds):
-    """@return false where the campaign failed."""
+def is_free_here(program, folder, kind, seeds):
+    """Whether a campaign may be run here: merges its shards, and tells of one that a cluster may be at work on. None where that failed."""
     campaign, wanted = folder / "campaign", options(kind, seeds)
     if may_be_submitted(campaign):
         status = status_of(program, folder, wanted) if has_begun(campaign) else {}
         if status is None:
-            return False
+            return None
         if awaits_cluster(campaign, status.get("runs")):
             print_awaiting(campaign)
-            return True
+            return False
     elif has_shards(campaign) and not compare(program, folder, [*wanted, "--merge"])[0]:
-        return False
-    return all(compare(program, folder, options(kind, upto))[0] for upto in range(1, seeds + 1))
+        return None
+    return True
 
 
-def run(program, folder, kind, seeds):
-    """@return false where the campaign failed."""
-    if not cluster_answers():
-        return run_here(program, folder, kind, seeds)
+def run_on_cluster(program, folder, kind, seeds):
+    """Returns false where the campaign failed."""
     campaign, wanted, merged = folder / "campaign", options(kind, seeds), 0
     if has_shards(campaign) and not compare(program, folder, [*wanted, "--merge"])[0]:
         return False
@@ -82,7 +85,7 @@ def run(program, folder, kind, seeds):
         if failed := failed_slices(campaign, status):
             print_failed(failed)
             return False
-    if missing(folder, seeds) == 0:
+    if done_in(folder, seeds) == SCENES * len(STRATEGIES) * len(seeds):
         submitted_file(campaign).unlink(missing_ok=True)
         return True
     submitted, said = compare(program, folder, [*wanted, "--slurm", *slurm_options()])
@@ -105,10 +108,11 @@ def status_of(program, folder, arguments):
     return json.loads(done.stdout)["result"]
 
 
-def missing(folder, seeds):
-    table = folder / "campaign/runs.csv"
-    there = max(0, sum(1 for _ in table.open()) - 1) if table.exists() else 0
-    return SCENES * seeds * len(STRATEGIES) - there
+def done_in(folder, seeds):
+    """How many runs of these seeds the tables of a campaign have."""
+    if not (folder / "campaign/runs.csv").exists():
+        return 0
+    return sum(int(run["seed"]) in seeds for run in Figures(folder / "campaign", STRATEGIES).runs)
 
 
 def interval(values):
@@ -164,12 +168,14 @@ def hold(figures, so_far):
     return held
 
 
-def section(kind, folder, seeds):
+def section(kind, folder, records, seeds):
+    """Lines of the document, how many limits were missed, and whether runs are missing."""
     title, _ = CAMPAIGNS[kind]
-    lines = [f"## {title}", "", "```sh", f"saccade compare {' '.join(options(kind, seeds))} --out DIR", "```", ""]
-    if not (folder / "campaign/runs.csv").exists():
-        return [*lines, "Not run yet.", ""], 0
-    figures = Figures(folder / "campaign", STRATEGIES)
+    command = " ".join(options(kind, range(1, seeds + 1))).replace(",".join(map(str, range(1, seeds + 1))), f"1-{seeds}")
+    lines = [f"## {title}", "", "```sh", f"saccade compare {command} --out DIR", "```", ""]
+    figures = records.with_runs_of(folder / "campaign")
+    if not figures.runs:
+        return [*lines, "Not run yet.", ""], 0, True
     done = {}
     for entry in figures.runs:
         done.setdefault((entry["scene"], entry["seed"]), set()).add(entry["strategy"])
@@ -177,34 +183,77 @@ def section(kind, folder, seeds):
     figures.runs = [entry for entry in figures.runs if (entry["scene"], entry["seed"]) in whole]
     figures.views = [view for view in figures.views if (view["scene"], view["seed"]) in whole]
     if len({scene for scene, _ in whole}) < 2:
-        return [*lines, f"{len(whole)} pairs of a scene and a seed so far: too few for figures.", ""], 0
+        return [*lines, f"{len(whole)} pairs of a scene and a seed so far: too few for figures.", ""], 0, True
     count, scenes = len(figures.runs), len({scene for scene, _ in whole})
     planned = SCENES * seeds * len(STRATEGIES)
     held = hold(figures, so_far=count < planned)
     names = ", ".join(sorted({seed for _, seed in whole}, key=int))
     lines += [f"{count:,} of {planned:,} runs: {scenes} scenes, {len(whole) / scenes:.1f} seeds each. Seeds: {names}.", "",
               *means(figures), "", *differences(figures), "", *held.lines, ""]
-    return lines, held.missed
+    return lines, held.missed, count < planned
+
+
+def run_here(program, folder, wanted, records):
+    """Seed by seed, so that all campaigns grow together. Returns those that failed."""
+    free = {kind: is_free_here(program, folder / kind, kind, seeds) for kind, seeds in wanted.items()}
+    failed = [kind for kind, is_free in free.items() if is_free is None]
+    for upto in range(1, 1 + max(map(len, wanted.values()), default=0)):
+        for kind, seeds in wanted.items():
+            if not free[kind] or kind in failed or len(seeds) < upto:
+                continue
+            if not compare(program, folder / kind, options(kind, seeds[:upto]))[0]:
+                failed.append(kind)
+            records[kind].add_whole_seeds(folder / kind / "campaign")
+    return failed
+
+
+def run(program, folder, records, seeds):
+    """Runs what is not recorded. Returns the campaigns that failed."""
+    wanted = {}
+    for kind in CAMPAIGNS:
+        records[kind].add_whole_seeds(folder / kind / "campaign")
+        wanted[kind] = [seed for seed in range(1, seeds + 1) if seed not in records[kind].seeds()]
+    wanted = {kind: of_kind for kind, of_kind in wanted.items() if of_kind}
+    if not cluster_answers():
+        return run_here(program, folder, wanted, records)
+    return [kind for kind, of_kind in wanted.items() if not run_on_cluster(program, folder / kind, kind, of_kind)]
+
+
+def check(program, folder, records):
+    """Runs the first and the last scene of each record again. Returns false where a figure differs."""
+    same = True
+    for kind in CAMPAIGNS:
+        for seed in records[kind].seeds():
+            home = folder / f"check-{kind}-{seed}"
+            if not compare(program, home, options(kind, [seed], f"clutter:{FIRST_SCENE},clutter:{FIRST_SCENE + SCENES - 1}"))[0]:
+                return False
+            different = records[kind].differences(seed, home / "campaign")
+            print(f"  {kind}, seed {seed}: {'as recorded' if not different else 'differs: ' + '; '.join(different)}", flush=True)
+            same = same and not different
+    return same
 
 
 def main():
     program, folder, document, *rest = sys.argv[1:]
+    folder = pathlib.Path(folder)
     seeds = int(os.environ.get("SACCADE_HEADLINE_SEEDS", SEEDS))
-    failed, incomplete, missed = [], [], 0
+    records = {kind: Records(pathlib.Path(document).with_suffix(""), kind, STRATEGIES, SCENES) for kind in CAMPAIGNS}
+    if rest == ["check"]:
+        return 0 if check(program, folder, records) else 2
+    failed = [] if rest == ["table"] else run(program, folder, records, seeds)
+    incomplete, missed = [], 0
     lines = ["# The headline figures", "",
              "Written by `make evidence` (`scripts/evidence_headline.py`). A hundred scenes of random clutter that nothing was chosen by, "
              "the noise of a Kinect v1, five views after the initial scan. Each scene counts once, with the mean of its seeds; "
              "± is half of the 95 % interval over scenes. Differences are paired by scene; bold ones differ from 0 by the paired "
              "t-test at 5 %, each by itself: nothing is corrected for the number of comparisons. Intervals of ratios are by the delta "
              "method on paired scenes; the ratio itself is held to its limit, not an end of its interval. While runs are missing, "
-             "met and missed are said \"so far\". [Metrics](../reference/metrics.md), [strategies](../guides/exploration.md).", ""]
+             "met and missed are said \"so far\". Seeds that are whole are kept run by run in [headline/](headline). [Metrics](../reference/metrics.md), [strategies](../guides/exploration.md).", ""]
     for kind in CAMPAIGNS:
-        home = pathlib.Path(folder) / kind
-        if rest != ["table"] and not run(program, home, kind, seeds):
-            failed.append(kind)
-        if missing(home, seeds) > 0:
+        records[kind].add_whole_seeds(folder / kind / "campaign")
+        told, missed_here, unfinished = section(kind, folder / kind, records[kind], seeds)
+        if unfinished:
             incomplete.append(kind)
-        told, missed_here = section(kind, home, seeds)
         lines += told
         missed += missed_here
     pathlib.Path(document).write_text("\n".join(lines).rstrip() + "\n")

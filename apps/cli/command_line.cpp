@@ -23,7 +23,8 @@ namespace {
 
 constexpr const char* kFooter{
     "Exit status: 0 done, 1 a bug, 2 usage, 3 bad input, 4 not available here, 5 finished without any result,\n"
-    "129, 130 or 143 interrupted (SIGHUP, Ctrl-C, SIGTERM): what was done is kept. A second Ctrl-C ends at once.\n"
+    "129, 130, 140 or 143 interrupted (SIGHUP, Ctrl-C, SIGUSR2, SIGTERM): what was done is kept.\n"
+    "A second Ctrl-C ends at once.\n"
     "Lengths are in metres; points and poses are in the map's world frame; angles on the command line are in degrees."};
 
 void add_global_options(CLI::App& program, GlobalOptions& global) {

@@ -7,7 +7,9 @@
 #include <sstream>
 
 #include "compare_jobs.hpp"
+#include "compare_page.hpp"
 #include "compare_report.hpp"
+#include "compare_set_aside.hpp"
 #include "compare_shards.hpp"
 #include "compare_slurm.hpp"
 #include "server/report_file.hpp"
@@ -16,8 +18,6 @@ namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-constexpr const char* kReportFile{"index.html"};
 
 json planned_json(const Comparison& comparison, const PlannedRun& run) {
   const ComparedScene& scene = comparison.scenes()[run.scene];
@@ -52,8 +52,7 @@ Result<Outcome> list_runs(const Comparison& comparison) {
          << (run.max_views ? std::to_string(*run.max_views) + " views at most" : "as many views as sphere takes")
          << (run.found ? ", done" : "") << '\n';
   }
-  const auto found = std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; });
-  text << runs.size() << " runs, " << found << " of them done\n";
+  text << runs.size() << " runs, " << done_of(runs) << " of them done\n";
   for (const Error& error : unreadable) text << "unreadable: " << error.to_string() << '\n';
   return Outcome{.result = {{"runs", std::move(rows)}}, .text = text.str()};
 }
@@ -72,15 +71,11 @@ Status check_merged(const Comparison& comparison, ProgressBar& bar) {
   const std::filesystem::path& out = comparison.options().out;
   const std::vector<std::filesystem::path> shards = shard_files(out);
   if (shards.empty()) return {};
-  const auto done_of = [&comparison](const CampaignIndex& found) {
-    const std::vector<PlannedRun> plan = comparison.plan(found);
-    return std::count_if(plan.begin(), plan.end(), [](const PlannedRun& run) { return run.found; });
-  };
   std::vector<Error> unreadable;
   SACCADE_TRY(const CampaignIndex merged, done_in(out, {}));
   SACCADE_TRY(const CampaignIndex all, done_in(out, shards, &unreadable));
   for (const Error& error : unreadable) bar.warn("runs of a shard are not seen: " + error.to_string());
-  const auto waiting = done_of(all) - done_of(merged);
+  const std::size_t waiting = done_of(comparison.plan(all)) - done_of(comparison.plan(merged));
   if (waiting == 0) return {};
   return Error{Errc::invalid_argument,
                "slices have done " + std::to_string(waiting) +
@@ -92,7 +87,7 @@ Status check_merged(const Comparison& comparison, ProgressBar& bar) {
 /// Runs what is missing, on this machine.
 Result<CampaignState> run_here(Context& context, const Comparison& comparison) {
   SACCADE_CHECK(check_merged(comparison, context.bar()));
-  SACCADE_CHECK(context.open_folder());
+  SACCADE_CHECK(open_campaign_folder(context));
   SACCADE_TRY(Campaign campaign, Campaign::open(*context.folder() / kCampaignFile));
   for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
   if (const std::string mixed = mixed_camera(comparison.options().run); !mixed.empty()) context.bar().note(mixed);
@@ -108,7 +103,7 @@ Result<CampaignState> merge_here(Context& context, const Comparison& comparison)
   SACCADE_TRY(const std::vector<std::filesystem::path> shards, shards_to_merge(comparison.options()));
   std::optional<Campaign> campaign;
   const auto open = [&]() -> Result<const Campaign*> {
-    SACCADE_CHECK(context.open_folder());
+    SACCADE_CHECK(open_campaign_folder(context));
     SACCADE_TRY(campaign, Campaign::open(*context.folder() / kCampaignFile));
     return &*campaign;
   };
@@ -119,21 +114,6 @@ Result<CampaignState> merge_here(Context& context, const Comparison& comparison)
   json now{{"merged_now", merged.added}, {"known", merged.known}, {"shards", shards.size()}};
   if (merged.left_out > 0) now["left_out"] = merged.left_out;
   return CampaignState{std::move(*campaign), std::move(found), planned, std::move(now), left_out_text(merged)};
-}
-
-json result_json(const Comparison& comparison, const CampaignState& state, const ComparedRuns& compared) {
-  const CompareOptions& options = comparison.options();
-  json result = comparison_json(compared);
-  result["out"] = options.out.string();
-  result["campaign"] = (options.out / kCampaignFile).string();
-  result["robot"] = comparison.robot_name();
-  result["max_views"] = compared.budget;
-  result["equal_views"] = options.equal_views;
-  result["seeds"] = options.seeds;
-  result["runs"] = {{"planned", state.planned}, {"done", compared.runs.size()}};
-  result["runs"].update(state.now);
-  result["interrupted"] = compared.runs.size() < state.planned;
-  return result;
 }
 
 /// The line of the text that says what was done now.
@@ -179,18 +159,43 @@ Result<Outcome> report(Context& context, const Comparison& comparison, const Cam
   context.lap("statistics");
   SACCADE_CHECK(write_comparison(out.path(), results));
   context.lap("tables");
-  Outcome outcome{.result = result_json(comparison, state, results)};
+  Outcome outcome{.result = campaign_json(comparison, results, state.planned)};
+  outcome.result["runs"].update(state.now);
   SACCADE_TRY(outcome.text, part(state.campaign, results, outcome.result));
   const json versions = versions_json(results.runs);
   if (!versions.empty()) outcome.result["versions"] = versions;
-  outcome.text += now_text(state, results.runs.size()) + versions_text(versions) + "report    " +
-                  (out / kReportFile).string() + '\n';
+  outcome.text +=
+      now_text(state, results.runs.size()) + versions_text(versions) + "report    " + (out / kPageFile).string() + '\n';
   if (std::filesystem::exists(out / kShardsFolder)) {
-    SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, comparison.plan(state.found)));
+    SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, comparison.plan(state.found), 0));
     outcome.result["slices"] = slices_json(slices);
   }
-  SACCADE_CHECK(server::write_report(out / kReportFile, context.document(outcome.result),
-                                     comparison_details(comparison, results)));
+  SACCADE_CHECK(
+      server::write_report(out / kPageFile, context.document(outcome.result), comparison_details(comparison, results)));
+  return outcome;
+}
+
+/// Shows on the page how a slice or a merge has ended.
+void refresh_page(Context& context, const Comparison& comparison) {
+  if (const Status page = write_page_of_slices(context, comparison); !page) {
+    context.bar().warn("the page was not written: " + page.error().to_string());
+  }
+}
+
+Result<CampaignState> merged_with_page(Context& context, const Comparison& comparison) {
+  Result<CampaignState> state = merge_here(context, comparison);
+  if (state || shard_records(comparison.options().out).empty()) return state;
+  refresh_page(context, comparison);
+  return with_way_out(state.error(), comparison.options());
+}
+
+Result<Outcome> run_slice_with_page(Context& context, const Comparison& comparison) {
+  const CompareOptions& options = comparison.options();
+  Result<Outcome> outcome = run_slice(context, comparison);
+  std::error_code ignored;
+  if (std::filesystem::exists(shard_folder(options.out, *options.machines.slice), ignored)) {
+    refresh_page(context, comparison);
+  }
   return outcome;
 }
 
@@ -198,7 +203,7 @@ Result<Outcome> report(Context& context, const Comparison& comparison, const Cam
 
 FolderOption campaign_folder() {
   return {.help = "folder for the results; runs that are in it already are not repeated",
-          .files = {kShardsFolder, kLogsFolder},
+          .files = {kShardsFolder, kLogsFolder, kSetAsideFolder},
           .marker = kCampaignFile,
           .opened_by_command = true};
 }
@@ -207,10 +212,14 @@ Result<Outcome> run_campaign(Context& context, const Comparison& comparison, con
   const MachineOptions& machines = comparison.options().machines;
   if (machines.list) return list_runs(comparison);
   if (machines.status) return slice_status(comparison);
-  if (machines.slice) return run_slice(context, comparison);
+  if (machines.slice) return run_slice_with_page(context, comparison);
+  if (machines.set_aside) {
+    SACCADE_TRY(const std::vector<std::string> lines, set_aside_damaged(comparison.options().out));
+    for (const std::string& line : lines) context.bar().warn(line);
+  }
   if (machines.slurm) return submit_slices(context, comparison);
   SACCADE_TRY(const CampaignState state,
-              machines.merge ? merge_here(context, comparison) : run_here(context, comparison));
+              machines.merge ? merged_with_page(context, comparison) : run_here(context, comparison));
   SACCADE_TRY(Outcome outcome, report(context, comparison, state, part));
   const auto done = outcome.result.at("runs").at("done").get<std::size_t>();
   if (!machines.merge && done < state.planned) {

@@ -44,16 +44,11 @@ std::string slurm_job() {
   return array.empty() ? value("SLURM_JOB_ID") : array + '_' + value("SLURM_ARRAY_TASK_ID");
 }
 
-std::size_t done_of(const std::vector<PlannedRun>& runs) {
-  return static_cast<std::size_t>(
-      std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; }));
-}
-
 /// The rule of campaign_folder() for a DIR that other slices write into as well, so that it cannot be locked.
 Status check_campaign_folder(const fs::path& out, bool force) {
   const FolderOption rule = campaign_folder();
   std::error_code ignored;
-  if (force || fs::is_regular_file(out / kCampaignFile, ignored)) return {};
+  if (force || fs::is_regular_file(out / kCampaignFile, ignored) || !shard_records(out).empty()) return {};
   for (const fs::directory_entry& entry : fs::directory_iterator{out, ignored}) {
     const std::string name = entry.path().filename().string();
     const bool own =
@@ -73,16 +68,6 @@ Error made_by(const std::string& version, const fs::path& shard) {
       "was made by Saccade " + version + ", and this is " + SACCADE_VERSION +
           "; merge it with that one, or move the folder of the shard away and do its runs again; nothing was merged",
       shard.string()};
-}
-
-/// A slice that is done has at least tables in its file.
-Status check_not_emptied(const fs::path& shard) {
-  std::error_code code;
-  const std::uintmax_t bytes = fs::file_size(shard, code);
-  if (code || bytes > 0 || read_shard_record(shard.parent_path(), {}).state != ShardState::done) return {};
-  return Error{Errc::corrupt_data,
-               std::string{"is empty, although "} + kShardRecord + " says that its slice is done; do its runs again",
-               shard.string()};
 }
 
 /// Adds the runs of a shard that were made by this version. Returns another version that made some; empty: none did.
@@ -231,10 +216,13 @@ Result<Outcome> run_slice(Context& context, const Comparison& comparison) {
   ShardRecord record = next_try(folder, slice);
   SACCADE_CHECK(write_json(folder / kShardRecord, to_json(record)));
   for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
-  const Result<std::size_t> now = [&] {
+  Result<std::size_t> now = [&] {
     const RecordRenewal renewal{folder.path()};
     return run_recorded(context, comparison, folder.path(), record);
   }();
+  if (now && *now == 0 && time_is_up()) {
+    now = Error{Errc::invalid_argument, "the time limit came before a run was done; give tasks more time", {}};
+  }
   record.ended = utc_now();
   record.state = !now ? ShardState::failed : interrupted() ? ShardState::interrupted : ShardState::done;
   if (!now) record.error = now.error().to_string();
@@ -261,6 +249,22 @@ Result<Outcome> run_slice(Context& context, const Comparison& comparison) {
                         "; the same command goes on from there";
   }
   return outcome;
+}
+
+Status open_campaign_folder(Context& context) {
+  std::error_code ignored;
+  const bool by_slices =
+      !fs::is_regular_file(context.out() / kCampaignFile, ignored) && !shard_records(context.out()).empty();
+  return context.open_folder(by_slices ? kShardsFolder : "");
+}
+
+Status check_not_emptied(const fs::path& shard) {
+  std::error_code code;
+  const std::uintmax_t bytes = fs::file_size(shard, code);
+  if (code || bytes > 0 || read_shard_record(shard.parent_path(), {}).state != ShardState::done) return {};
+  return Error{Errc::corrupt_data,
+               std::string{"is empty, although "} + kShardRecord + " says that its slice is done; do its runs again",
+               shard.string()};
 }
 
 void record_failed_start(const CompareOptions& options, bool force, const Error& error) {
@@ -307,7 +311,7 @@ Result<Outcome> slice_status(const Comparison& comparison) {
   const std::vector<PlannedRun> plan = comparison.plan(found);
   const std::size_t done = done_of(plan);
   const std::size_t in_campaign = done_of(comparison.plan(merged));
-  SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, plan));
+  SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, plan, 0));
   std::ostringstream text;
   text << std::left << plan.size() << " runs: " << in_campaign << " in the campaign, " << done - in_campaign
        << " in shards, " << plan.size() - done << " to be done\n";

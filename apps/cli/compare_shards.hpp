@@ -22,6 +22,12 @@ template <class T>
   return needed;
 }
 
+/// Opens DIR as Context::open_folder does, and knows a campaign by its slices as well.
+[[nodiscard]] Status open_campaign_folder(Context& context);
+
+/// Refuses the empty file of a slice that is done, which has at least tables. corrupt_data.
+[[nodiscard]] Status check_not_emptied(const std::filesystem::path& shard);
+
 /// Runs that are done, in the campaign of a folder and in these shards. Runs in shards that another version of Saccade
 /// made do not count, since they cannot be merged.
 /// @param broken  takes the errors of shards that cannot be read, which count as empty then, and names shards with runs

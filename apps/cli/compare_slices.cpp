@@ -199,17 +199,19 @@ std::vector<fs::path> shard_files(const fs::path& out) {
   return files;
 }
 
-Result<std::vector<SliceProgress>> progress_of(const Comparison& comparison, const std::vector<PlannedRun>& plan) {
+Result<std::vector<SliceProgress>> progress_of(const Comparison& comparison, const std::vector<PlannedRun>& plan,
+                                               std::size_t count) {
   const CompareOptions& options = comparison.options();
   const SliceCounter counter{plan, options.equal_views};
   std::set<std::size_t> counts;
+  if (count > 0) counts.insert(count);
   for (const fs::path& shard : folders_in(options.out / kShardsFolder)) {
     if (const auto slice = slice_of(shard.filename().string())) counts.insert(slice->count);
   }
   std::vector<SliceProgress> slices;
-  for (const std::size_t count : counts) {
-    for (std::size_t index = 0; index < count; ++index) {
-      const Slice slice{index, count};
+  for (const std::size_t of : counts) {
+    for (std::size_t index = 0; index < of; ++index) {
+      const Slice slice{index, of};
       const SliceRuns runs = counter.of(slice);
       ShardRecord record = read_shard_record(shard_folder(options.out, slice), slice);
       // Runs were added to the comparison, or its shard cannot be read.

@@ -105,8 +105,9 @@ struct SliceProgress {
 
 /// All slices of the shards in DIR/shards, those included that have not begun.
 /// @param plan  with what is done in the campaign and the shards
+/// @param count  of slices that are submitted now; 0: none are
 [[nodiscard]] Result<std::vector<SliceProgress>> progress_of(const Comparison& comparison,
-                                                             const std::vector<PlannedRun>& plan);
+                                                             const std::vector<PlannedRun>& plan, std::size_t count);
 /// {slice, of, state, planned, done, tries, machine, job, began, ended, error} for each.
 [[nodiscard]] nlohmann::json slices_json(const std::vector<SliceProgress>& slices);
 

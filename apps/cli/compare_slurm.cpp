@@ -10,7 +10,9 @@
 #include <optional>
 #include <sstream>
 
+#include "compare_page.hpp"
 #include "compare_shards.hpp"
+#include "options.hpp"
 #include "saccade/core/fnv1a.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "shell_quoted.hpp"
@@ -96,6 +98,18 @@ std::string job_name(const fs::path& out) {
   return "saccade-" + hash.text().substr(0, 8);
 }
 
+/// Seconds before the time limit at which a task is told to keep what it has; Slurm may be a minute early.
+constexpr const char* kWarningBefore_s{"60"};
+
+/// Tells whether a time limit of sbatch leaves time for work before the warning: five minutes or more, or what the
+/// partition grants. Limits of Slurm: minutes, minutes:seconds, hours:minutes:seconds, days-hours[:minutes[:seconds]].
+bool is_worth_a_warning(const std::string& limit) {
+  constexpr std::uint64_t kLeast_min{5};
+  if (limit.find('-') != std::string::npos || std::count(limit.begin(), limit.end(), ':') > 1) return true;
+  const auto minutes = whole_number(limit.substr(0, limit.find(':')));
+  return !minutes || *minutes == 0 || *minutes >= kLeast_min;  // 0 and UNLIMITED: no limit
+}
+
 /// Options of sbatch for both jobs. They stand in the script, and are given to sbatch as well, since there they count
 /// more than its environment.
 std::vector<std::string> options_of_both(const SliceJob& job) {
@@ -108,6 +122,7 @@ std::vector<std::string> options_of_both(const SliceJob& job) {
 
 std::vector<std::string> options_of_array(const SliceJob& job) {
   std::vector<std::string> options = options_of_both(job);
+  if (is_worth_a_warning(job.options.time)) options.push_back(std::string{"--signal=B:USR2@"} + kWarningBefore_s);
   options.push_back("--array=" + ranges_of(job.wanted));
   options.push_back("--cpus-per-task=" + std::to_string(job.options.cpus));
   return options;
@@ -131,13 +146,32 @@ std::string command_of(const SliceJob& job, std::size_t threads) {
   return text + " --threads " + std::to_string(threads) + " --out " + shell_quoted(job.out.string());
 }
 
-/// The script ends at once, and its job fails, where its node has no DIR; one that it made would be its own.
-/// From then on it writes to its log, so that a working folder that the node cannot reach leaves a trace.
+/// The script ends at once, and its job fails, where its node has no DIR; one that it made would be its own. Slurm
+/// keeps the reason as the job's comment, since there is no log. From then on the script writes to its log, so that a
+/// working folder that the node cannot reach leaves a trace.
 std::string begin_in(const SliceJob& job, const std::string& log) {
-  return "set -e\ntest -d " + shell_quoted(job.out.string()) + "\nmkdir -p " +
-         shell_quoted((job.out / kLogsFolder).string()) + "\nexec >>" + log + " 2>&1\ncd " +
-         shell_quoted(job.work_folder.string()) + '\n';
+  return "set -e\nif ! test -d " + shell_quoted(job.out.string()) +
+         "; then\n  scontrol update \"JobId=$SLURM_JOB_ID\" \"Comment=node $SLURMD_NODENAME has no \"" +
+         shell_quoted(job.out.string()) + "\n  exit 1\nfi\nmkdir -p " + shell_quoted((job.out / kLogsFolder).string()) +
+         "\nexec >>" + log + " 2>&1\ncd " + shell_quoted(job.work_folder.string()) + '\n';
 }
+
+/// Waits for the task of the script, and queues it again where the time limit has ended it (128 + SIGUSR2). Slurm sends
+/// other signals to all processes of a job, and SIGUSR2 to the script alone.
+constexpr const char* kWaitForTask{
+    "task=$!\n"
+    "trap 'kill -USR2 \"$task\"' USR2\n"
+    "trap : INT TERM\n"
+    "while :; do\n"
+    "  status=0\n"
+    "  wait \"$task\" || status=$?\n"
+    "  kill -0 \"$task\" 2>/dev/null || break\n"
+    "done\n"
+    "if [ \"$status\" -eq 140 ]; then\n"
+    "  echo 'the time limit is near; the slice is queued again'\n"
+    "  scontrol requeue \"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID\"\n"
+    "fi\n"
+    "exit \"$status\"\n"};
 
 /// Slices with a run that is not done.
 std::vector<std::size_t> slices_to_do(const SliceCounter& counter, std::size_t slices) {
@@ -252,10 +286,11 @@ std::string ranges_of(const std::vector<std::size_t>& numbers) {
 }
 
 std::vector<std::string> arguments_of_comparison(const std::vector<std::string>& given) {
-  static const std::map<std::string, bool> kLeftOut{
-      // whether a value follows
-      {"--slurm", false}, {"--dry-run", false}, {"--force", false},  {"--partition", true}, {"--time", true},
-      {"--cpus", true},   {"--tasks", true},    {"--threads", true}, {"--json", true},      {"--out", true}};
+  static const std::map<std::string, bool> kLeftOut{// whether a value follows
+                                                    {"--slurm", false}, {"--set-aside", false}, {"--dry-run", false},
+                                                    {"--force", false}, {"--partition", true},  {"--time", true},
+                                                    {"--cpus", true},   {"--tasks", true},      {"--threads", true},
+                                                    {"--json", true},   {"--out", true}};
   std::vector<std::string> kept;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const std::size_t equals = given[i].find('=');
@@ -271,8 +306,8 @@ std::vector<std::string> arguments_of_comparison(const std::vector<std::string>&
 
 std::string array_script(const SliceJob& job) {
   const std::string log = shell_quoted((job.out / kLogsFolder / "slice-").string()) + "\"$SLURM_ARRAY_TASK_ID\".log";
-  return head(options_of_array(job)) + begin_in(job, log) + "exec " + command_of(job, job.options.cpus) +
-         " --shard auto/" + std::to_string(job.slices) + " </dev/null\n";
+  return head(options_of_array(job)) + begin_in(job, log) + command_of(job, job.options.cpus) + " --shard auto/" +
+         std::to_string(job.slices) + " </dev/null &\n" + kWaitForTask;
 }
 
 std::string merge_script(const SliceJob& job) {
@@ -290,7 +325,7 @@ Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
     return Outcome{.result = {{"slices", job.wanted}, {"of", job.slices}, {"script", script}},
                    .text = script + "# when it has ended: " + command_of(job, 1) + " --merge\n"};
   }
-  SACCADE_CHECK(context.open_folder());
+  SACCADE_CHECK(open_campaign_folder(context));
   const fs::path out = fs::absolute(options.out).lexically_normal();
   SACCADE_CHECK(check_queue(job_name(out)));
   SACCADE_TRY(const Campaign campaign, Campaign::open(options.out / kCampaignFile));
@@ -301,8 +336,7 @@ Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
   SACCADE_CHECK(found.add(campaign));
   const std::vector<PlannedRun> plan = comparison.plan(found);
   SACCADE_TRY(const SliceJob job, job_of(context, comparison, plan));
-  const auto missing = static_cast<std::size_t>(
-      std::count_if(plan.begin(), plan.end(), [](const PlannedRun& run) { return !run.found; }));
+  const std::size_t missing = plan.size() - done_of(plan);
   nlohmann::json result{{"out", options.out.string()},
                         {"runs", {{"planned", plan.size()}, {"missing", missing}, {"merged_now", merged.added}}},
                         {"slices", job.wanted},
@@ -310,12 +344,16 @@ Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
   if (job.wanted.empty())
     return Outcome{.result = std::move(result), .text = "all runs are done; nothing was submitted\n"};
   SACCADE_TRY(const SubmittedJobs jobs, submit_jobs(job));
+  if (const Status page = write_page_of_slices(context, comparison, job.slices); !page) {
+    context.bar().warn("the page was not written: " + page.error().to_string());
+  }
   result["array_job"] = jobs.array;
   result["merge_job"] = jobs.merge;
   return Outcome{.result = std::move(result),
                  .text = "array     job " + jobs.array + ": " + counted(missing, "run") + " in " +
                          counted(job.wanted.size(), "slice") + "\nmerge     job " + jobs.merge +
-                         ", when it has ended\nlogs      " + (options.out / kLogsFolder).string() + '\n'};
+                         ", when it has ended\nlogs      " + (options.out / kLogsFolder).string() + "\npage      " +
+                         (options.out / kPageFile).string() + '\n'};
 }
 
 }  // namespace saccade::cli

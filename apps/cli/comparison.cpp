@@ -95,6 +95,11 @@ Result<std::vector<Scene>> scenes_named(const std::string& name, const MeshScene
 
 }  // namespace
 
+std::size_t done_of(const std::vector<PlannedRun>& runs) {
+  return static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; }));
+}
+
 Status Comparison::add_scene(Scene scene, const std::string& given_as) {
   const bool empty = std::all_of(scene.objects.begin(), scene.objects.end(),
                                  [](const SceneObject& object) { return object.support || object.fixture; });

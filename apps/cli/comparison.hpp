@@ -30,6 +30,8 @@ struct PlannedRun {
   std::optional<int> max_views;  ///< nullopt: as many as a run that is still to be done will take
   bool found{false};             ///< the campaign has it
 };
+/// Returns how many of these runs the campaign has.
+[[nodiscard]] std::size_t done_of(const std::vector<PlannedRun>& runs);
 
 /// Scene by scene, noise by noise, seed by seed, strategy by strategy.
 class Comparison {

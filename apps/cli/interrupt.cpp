@@ -28,6 +28,7 @@ void install_interrupt_handler() {
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGUSR2, &action, nullptr);
   struct sigaction hangup {};
   sigaction(SIGHUP, nullptr, &hangup);
   if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup stays what it is
@@ -36,6 +37,7 @@ void install_interrupt_handler() {
 }
 
 int interrupt_signal() { return caught.load(); }
+bool time_is_up() { return interrupt_signal() == SIGUSR2; }
 
 CancelOnInterrupt::CancelOnInterrupt(Progress& progress) : earlier_{cancels.exchange(&progress)} {
   if (interrupted()) progress.request_cancel();

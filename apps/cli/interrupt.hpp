@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Ctrl-C, SIGTERM and SIGHUP: the first asks the work to stop and keep what it has, the second ends the program at
-// once.
+// Ctrl-C, SIGTERM, SIGHUP and SIGUSR2 (a scheduler's time limit is near): the first asks the work to stop and keep what
+// it has, the second ends the program at once.
 
 #include "saccade/core/progress.hpp"
 
@@ -12,6 +12,8 @@ void install_interrupt_handler();
 /// The signal that asked to stop; 0 without one.
 [[nodiscard]] int interrupt_signal();
 [[nodiscard]] inline bool interrupted() { return interrupt_signal() != 0; }
+/// Tells whether the signal was that of a time limit.
+[[nodiscard]] bool time_is_up();
 /// 128 + signal.
 [[nodiscard]] inline int interrupt_status() { return 128 + interrupt_signal(); }
 

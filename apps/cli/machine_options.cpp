@@ -107,6 +107,8 @@ void add_machine_options(CLI::App& command, MachineOptions& options) {
       ->type_name("[FOLDER...]");
   command.add_flag("--slurm", options.slurm,
                    "submit the runs that are missing as a job array of Slurm, and a merge after it");
+  command.add_flag("--set-aside", options.set_aside,
+                   "with --merge or --slurm: move damaged shards to DIR/set-aside, and go on without them");
   command.add_flag("--dry-run", options.job.dry_run, "show the script of --slurm, and submit nothing")
       ->needs("--slurm");
   add_value(command, "--partition", options.job.partition, "NAME", "partition of the job array")->needs("--slurm");
@@ -129,6 +131,11 @@ void check_machine_options(const MachineOptions& options) {
     if (!given) continue;
     if (first != nullptr) usage_error(name, std::string{"cannot be given with "} + first);
     first = name;
+  }
+  if (options.set_aside && (!(options.merge || options.slurm) || options.job.dry_run || !options.merged.empty())) {
+    usage_error("--set-aside",
+                "goes with --slurm, or with --merge of the campaign's own shards; it moves no others, and nothing in a "
+                "--dry-run");
   }
   require_word("--partition", options.job.partition);
   require_word("--time", options.job.time);

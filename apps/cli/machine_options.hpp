@@ -40,10 +40,11 @@ struct MachineOptions {
   bool merge{false};
   std::vector<std::filesystem::path> merged;  ///< folders with shards; empty: those of the campaign
   bool slurm{false};
+  bool set_aside{false};  ///< with merge and slurm: damaged shards make way
   SlurmOptions job;
 };
 
-/// Adds --list, --shard, --status, --merge, --slurm, and what goes with --slurm.
+/// Adds --list, --shard, --status, --merge, --slurm, and what goes with them.
 void add_machine_options(CLI::App& command, MachineOptions& options);
 /// Throws a usage error for what makes no sense, alone or together.
 void check_machine_options(const MachineOptions& options);

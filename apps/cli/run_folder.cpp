@@ -26,7 +26,7 @@ bool is_leftover(std::string_view name) { return parse_temporary_name(name).has_
 
 bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_files, std::string_view marker) {
   std::error_code ignored;
-  if (fs::is_regular_file(path / marker, ignored)) return true;
+  if (!marker.empty() && fs::exists(path / marker, ignored)) return true;
   for (const fs::directory_entry& entry : fs::directory_iterator{path, ignored}) {
     const std::string name = entry.path().filename().string();
     if (is_leftover(name)) continue;

@@ -9,6 +9,8 @@ import math
 import os
 import pathlib
 import random
+import shutil
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -19,6 +21,7 @@ sys.path.insert(0, str(SCRIPTS))
 import evidence_campaign  # noqa: E402
 import evidence_headline  # noqa: E402
 import evidence_planner  # noqa: E402
+import evidence_records  # noqa: E402
 
 RUNS = ("scene", "strategy", "noise", "seed", "initial_coverage", "coverage", "coverage_area", "unknown_near_objects", "views")
 VIEWS = ("scene", "strategy", "noise", "seed", "number", "gain", "gain_observed", "coverage")
@@ -75,6 +78,9 @@ class Headline(unittest.TestCase):
         """A seed of every scene, without the last ones; strategy `worst` has the least of everything."""
         campaign = self.folder / kind / "campaign"
         campaign.mkdir(parents=True)
+        with sqlite3.connect(campaign / "campaign.sqlite") as file:
+            file.execute("CREATE TABLE runs (settings TEXT)")
+            file.executemany("INSERT INTO runs VALUES (?)", [('{"robot": "free", "gain": 1}',), ('{"robot": "free", "gain": 2}',)])
         chance = random.Random(7)
         with (campaign / "runs.csv").open("w") as runs, (campaign / "views.csv").open("w") as views:
             runs, views = csv.DictWriter(runs, RUNS), csv.DictWriter(views, VIEWS)
@@ -126,6 +132,42 @@ class Headline(unittest.TestCase):
         status, text = self.document()
         self.assertEqual(status, 1, text)
         self.assertEqual((text.count("- **missed**: "), text.count("- **missed so far**: ")), (5, 5))
+
+    def test_whole_seeds_are_recorded_and_not_run_again(self):
+        for kind in evidence_headline.CAMPAIGNS:
+            self.write_campaign(kind)
+        status, text = self.document()
+        records = sorted((self.folder / "document").iterdir())
+        self.assertEqual([record.name for record in records], ["arm-seed-01.csv", "flying-seed-01.csv"])
+        self.assertEqual(records[0].read_text().splitlines()[0], '# {"robot": "free"}')
+        self.assertEqual(len(records[0].read_text().splitlines()), 2 + 500)
+        for kind in evidence_headline.CAMPAIGNS:
+            shutil.rmtree(self.folder / kind)  # another machine
+        calls = self.folder / "calls"
+        program = self.folder / "saccade"
+        program.write_text(f"#!/bin/sh\necho x >>{calls}\n")
+        program.chmod(0o755)
+        done = subprocess.run([SCRIPTS / "evidence_headline.py", program, self.folder, self.folder / "document.md"], check=False,
+                              env={**os.environ, "SACCADE_HEADLINE_SEEDS": "1", "SACCADE_SLURM": "off"}, stdout=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, status)
+        self.assertFalse(calls.exists())
+        self.assertEqual((self.folder / "document.md").read_text(), text)
+        # A run that is done again must have the figures of its record.
+        checked = evidence_records.Records(self.folder / "document", "arm", evidence_headline.STRATEGIES, 100)
+        self.write_campaign("arm")
+        self.assertEqual(checked.differences(1, self.folder / "arm/campaign"), [])
+        table = self.folder / "arm/campaign/runs.csv"
+        table.write_text(table.read_text().replace(",1\n", ",2\n", 1))  # the views of the first run
+        self.assertEqual(checked.differences(1, self.folder / "arm/campaign"), ["clutter:201, surface: views 1, now 2"])
+
+    def test_records_of_other_settings_are_refused(self):
+        for kind in evidence_headline.CAMPAIGNS:
+            self.write_campaign(kind)
+        self.document()
+        record = self.folder / "document/arm-seed-01.csv"
+        (self.folder / "document/arm-seed-02.csv").write_text(record.read_text().replace('"robot"', '"arm"'))
+        with self.assertRaises(SystemExit):
+            evidence_records.Records(self.folder / "document", "arm", evidence_headline.STRATEGIES, 100)
 
     def test_ratio_of_one_scene_has_no_interval(self):
         figures = evidence_planner.Figures.__new__(evidence_planner.Figures)

@@ -26,6 +26,14 @@ def comparison(out, *more):
             "--min-gain", "1", "--image-size", "160,120", "--voxel-size", "0.015", "--quiet", "--out", str(out), *more]
 
 
+def done_in(shard):
+    """How many runs a shard has."""
+    if not shard.exists():
+        return 0
+    with sqlite3.connect(f"file:{shard}?mode=ro", uri=True) as file:
+        return file.execute("SELECT count(*) FROM runs").fetchone()[0]
+
+
 def run(out, *more):
     done = subprocess.run(comparison(out, *more), capture_output=True, text=True, timeout=300)
     if done.returncode != 0:
@@ -67,6 +75,37 @@ class CampaignTest(unittest.TestCase):
         self.assertEqual([slice["state"] for slice in result["slices"]], ["done"])
         self.assertEqual([row["method"] for row in result["benchmark"]["table"]], ["random"] * 3 + ["MCMF"] * 3)
         print(f"a benchmark after {time.monotonic() - began:.1f} s")
+
+    def test_a_task_whose_node_has_no_folder_says_so(self):
+        out = self.cluster.folder / "not there"
+        script = json.loads(run(out, "--slurm", "--dry-run", "--json", "-"))["result"]["script"]
+        job = subprocess.run(["sbatch", "--parsable", "--array=0"], input=script, capture_output=True, text=True, check=True).stdout.strip()
+
+        def told():
+            shown = subprocess.run(["scontrol", "show", "job", job], capture_output=True, text=True).stdout
+            return shown if "JobState=FAILED" in shown else None
+        self.assertRegex(until(told, 60, "the task fails"), f"Comment=node (one|two) has no {out}")
+        self.assertFalse(out.exists())
+
+    def test_tasks_at_their_time_limit_and_preempted_ones_go_on(self):
+        cluster, began = self.cluster, time.monotonic()
+        out = cluster.folder / "limited"
+        array = json.loads(run(out, "--slurm", "--tasks", "2", "--time", "10", "--json", "-"))["result"]["array_job"]
+        until(lambda: done_in(out / "shards/0-of-2/campaign.sqlite") > 0, 60, "the first slice has done a run")
+        # As Slurm does a minute before the limit (--signal=B:USR2@60).
+        subprocess.run(["scancel", "--batch", "--signal=USR2", f"{array}_0"], check=True)
+        log = out / "logs/slice-0.log"
+        until(lambda: "queued again" in log.read_text(), 30, "the slice is queued again")
+        # The other one makes place for an urgent job, which takes all nodes that are left for a moment.
+        up = sum(not state.startswith("down") for state in cluster.states().values())
+        subprocess.run(["sbatch", "--partition=urgent", f"--nodes={up}", "--exclusive", "--output=/dev/null", "--wrap=sleep 1"],
+                       check=True, stdout=subprocess.DEVNULL)
+        until(cluster.is_done, 120, "the queue is empty")
+        status = json.loads(run(out, "--status", "--json", "-"))["result"]
+        print(f"a limit and a preemption: complete after {time.monotonic() - began:.1f} s\n{log.read_text()}")
+        self.assertEqual([slice["state"] for slice in status["slices"]], ["done", "done"])
+        self.assertEqual([slice["tries"] for slice in status["slices"]], [2, 2])
+        self.assertEqual(status["runs"], {"planned": 24, "done": 24, "merged": 24})
 
     def test_a_lost_node_and_killed_tasks_change_nothing(self):
         try:

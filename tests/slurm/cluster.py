@@ -167,8 +167,16 @@ class Cluster:
         return next((entry.partition(b"=")[2].decode() for entry in environment if entry.startswith(b"SLURMD_NODENAME=")), None)
 
     def tasks(self):
-        """The processes of tasks: (process, node)."""
-        return [(process_id, self.node_of(process_id)) for process_id in self.steps() if self.node_of(process_id)]
+        """The processes of tasks, without the scripts that wait for them: (process, node)."""
+        return [(process_id, self.node_of(process_id)) for process_id in self.steps()
+                if self.node_of(process_id) and not self.is_script(process_id)]
+
+    @staticmethod
+    def is_script(process_id):
+        try:
+            return os.path.basename(os.readlink(f"/proc/{process_id}/exe")) == "bash"
+        except FileNotFoundError:
+            return True  # it has ended
 
     def states(self):
         output = subprocess.run([find("sinfo"), "--noheader", "--Node", "--format", "%N %T"], capture_output=True, text=True)
@@ -177,7 +185,7 @@ class Cluster:
     def is_done(self):
         """Whether nothing is queued or running. Slurm lets a task that it queues again wait for two minutes; here it need not."""
         output = subprocess.run([find("squeue"), "--noheader", "--array", "--format", "%i %T %r"], capture_output=True, text=True)
-        lines = [line.split() for line in output.stdout.splitlines()]
+        lines = [line.split(maxsplit=2) for line in output.stdout.splitlines()]  # a reason may have blanks
         for job, _, reason in lines:
             if reason == "BeginTime":
                 subprocess.run([find("scontrol"), "update", f"JobId={job}", "StartTime=now"], capture_output=True)

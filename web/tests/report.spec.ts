@@ -65,10 +65,24 @@ test("a comparison in slices says how far each is and what failed", async ({ pag
   await expect(slices.locator("li")).toHaveText("Slice 1 of 2: clutter:6: no surface of an object can be seen");
   await expect(slices.locator("tbody tr")).toHaveCount(2);
   await expect(slices.locator("tbody tr").nth(1)).toContainText("4 of 6");
+  record.result["runs"] = { planned: 12, done: 5, in_shards: 3 };
+  record.result["unreadable"] = ["shards/1-of-2/campaign.sqlite: is damaged"];
+  await open(page, writeReport(folder, record, [], details));
+  await expect(page.locator("main")).toContainText("5 of 12 runs are merged, 3 more are done in slices, 4 are still to be done.");
+  await expect(slices.locator("li").nth(1)).toHaveText("Cannot be read: shards/1-of-2/campaign.sqlite: is damaged");
+  delete record.result["unreadable"];
   delete record.result["slices"];
   await open(page, writeReport(folder, record, [], details));
   await expect(page.locator("#slices")).toHaveCount(0);
   expect(wrong).toEqual([]);
+});
+
+test("a benchmark whose slices are at work has no table yet", async ({ page }) => {
+  const { record, details } = comparison();
+  record.command = "benchmark";
+  expect(await open(page, writeReport(folder, record, [], details))).toEqual([]);
+  await expect(page.getByRole("heading", { level: 1 })).toHaveText("Benchmark");
+  await expect(page.getByRole("heading", { level: 2 }).first()).toHaveText("All scenes");
 });
 
 test("a benchmark has ours and published figures in one table", async ({ page }) => {

@@ -204,7 +204,12 @@ function summaryText(comparison: Comparison): string {
   const { result } = comparison.document.record;
   const runs = object(result["runs"]);
   const [done, planned] = [number(runs["done"]) ?? 0, number(runs["planned"]) ?? 0];
-  const sentences = [done < planned ? `${done} of ${planned} runs; the others are still to be done.` : `${plural(done, "run")}.`];
+  const inShards = number(runs["in_shards"]) ?? 0;
+  const rest = planned - done - inShards;
+  const sentences =
+    inShards > 0
+      ? [`${done} of ${planned} runs are merged, ${inShards} more are done in slices, ${rest > 0 ? `${rest} are still to be done` : "none is left"}.`]
+      : [done < planned ? `${done} of ${planned} runs; the others are still to be done.` : `${plural(done, "run")}.`];
   const area = comparison.measures.find((measure) => measure.name === "coverage_area");
   for (const group of comparison.of(comparison.scenes.length > 1 ? "" : (comparison.scenes[0] ?? ""))) {
     const of = estimate(group.json["coverage_area"]);

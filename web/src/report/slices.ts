@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far the slices of a campaign are that several machines share, and what failed.
 import { h } from "../ui/dom";
-import { type Json, number, objects, type ReportDocument, text } from "./document";
+import { type Json, list, number, objects, type ReportDocument, text } from "./document";
 import { section, type Section } from "./parts";
 import { type Column, dataTable } from "./table";
 import { count, plural } from "./words";
@@ -31,14 +31,15 @@ function statesText(slices: readonly Json[]): string {
 /** null for a campaign without slices. */
 export function slicesSection(document: ReportDocument): Section | null {
   const slices = objects(document.record.result["slices"]);
-  if (slices.length === 0) return null;
+  const unreadable = list(document.record.result["unreadable"]).map((error) => h("li", {}, `Cannot be read: ${text(error)}`));
+  if (slices.length === 0 && unreadable.length === 0) return null;
   const failed = slices.filter((slice) => text(slice["error"]) !== "");
   const errors = failed.map((slice) => h("li", {}, `Slice ${String(number(slice["slice"]))} of ${String(number(slice["of"]))}: ${text(slice["error"])}`));
   return section(
     "slices",
     "Slices",
     h("p", { class: "soft" }, `${plural(slices.length, "slice")}: ${statesText(slices)}.`),
-    errors.length > 0 ? h("ul", {}, ...errors) : null,
+    errors.length + unreadable.length > 0 ? h("ul", {}, ...errors, ...unreadable) : null,
     dataTable("Slices of the campaign", kColumns, slices),
   );
 }

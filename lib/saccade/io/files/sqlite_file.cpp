@@ -19,6 +19,11 @@ std::string system_reason(sqlite3* database) {
   return reason;
 }
 
+bool is_of_locking(int code) {
+  return code == SQLITE_IOERR_LOCK || code == SQLITE_IOERR_RDLOCK || code == SQLITE_IOERR_UNLOCK ||
+         code == SQLITE_IOERR_CHECKRESERVEDLOCK;
+}
+
 }  // namespace
 
 void SqliteFile::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
@@ -33,12 +38,21 @@ Error SqliteFile::error(int code) const {
     case SQLITE_FULL: return {Errc::io_failure, "cannot write: the disk is full; make room or write elsewhere", where};
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return {Errc::io_failure, "is being written by another process; try again when that one is done", where};
+      return {
+          Errc::io_failure,
+          "is being written by another process; try again when that one is done, or, if there is none, write to a file "
+          "system that has locks",
+          where};
     case SQLITE_READONLY:
     case SQLITE_PERM:
       return {Errc::io_failure, "cannot be written; check the permissions of the file and its folder", where};
     case SQLITE_CANTOPEN: return {Errc::io_failure, "cannot be opened or created" + system_reason(database), where};
     case SQLITE_IOERR: {
+      if (is_of_locking(code)) {
+        return {Errc::io_failure,
+                "cannot be locked" + system_reason(database) + "; choose a folder on a file system that has locks",
+                where};
+      }
       const bool reading = code == SQLITE_IOERR_READ || code == SQLITE_IOERR_SHORT_READ;
       return {Errc::io_failure, (reading ? "cannot be read" : "cannot be written") + system_reason(database), where};
     }
