@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "saccade/scene/scene_yaml.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "support/placed_object.hpp"
 
@@ -108,6 +109,28 @@ TEST(RayScene, TexturesAndVertexColoursAreSeen) {
   const Rgb8 near_red = corner.color(80, 60);
   EXPECT_GT(near_red[0], 4 * near_red[1]);
   EXPECT_GT(near_red[0], 4 * near_red[2]);
+}
+
+TEST(RayScene, RenderedPixelsAreThoseOfSingleRays) {
+  PinholeCamera camera = small_camera();
+  camera.width -= 3;  // no whole number of packets
+  for (const char* name : {"clutter:5", "tabletop-1", "jug"}) {
+    const RayScene rays = built(find_scene(name).value());
+    std::size_t other_triangles = 0;
+    for (const Pose& T_world_camera : rays.scene().scan) {
+      const ExactFrame frame = rays.render(camera, T_world_camera);
+      for (int v = 0; v < camera.height; ++v) {
+        for (int u = 0; u < camera.width; ++u) {
+          const auto hit = rays.cast(T_world_camera.translation(), T_world_camera.linear() * camera.ray(u, v));
+          const bool seen = hit && hit->t >= camera.min_range_m && hit->t <= camera.max_range_m;
+          const float depth = seen ? static_cast<float>(hit->t) : 0.0F;
+          const int object = seen ? static_cast<int>(hit->object) : -1;
+          if (frame.depth(u, v) != depth || frame.object(u, v) != object) ++other_triangles;
+        }
+      }
+    }
+    EXPECT_EQ(other_triangles, 0U) << name;
+  }
 }
 
 TEST(RayScene, ThreadsDoNotChangeAPixel) {
