@@ -155,24 +155,8 @@ campaign attention compare --scenes tabletop-1,tabletop-2,tabletop-3,tabletop-4 
   --strategies attention,standard,sphere,random-contours,oracle --robot comau --seeds 1-10 --max-views 5
 campaign attention_clutter compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle --robot comau --seeds 1 --max-views 5
 
-echo "Published protocols: stand-ins, and the meshes that are there; each leaves its table.csv in $out"
-# Nothing goes from there to docs/guides/benchmark.md: its tables are copied from such files by hand, with command and seeds.
-protocol() {  # NAME PROTOCOL OPTIONS…
-  campaign "$1" benchmark "${@:2}" --seeds 1-3
-}
-for protocol in view-sphere one-shot tabletop-arm household; do
-  protocol "benchmark_$protocol" "$protocol"
-done
-if [[ -d $data/meshes_stanford ]]; then
-  for protocol in view-sphere one-shot; do
-    protocol "benchmark_${protocol}_stanford" "$protocol" --objects "$data/meshes_stanford"
-  done
-else
-  echo "  without the Armadillo and the Bunny, $data/meshes_stanford is not there"
-fi
-if [[ -d $data/meshes_ycb ]]; then
-  protocol benchmark_ycb household --objects "$data/meshes_ycb"
-fi
+echo "Published protocols: stand-ins, and the meshes that are there, all strategies; tables go to docs/results/benchmark.md"
+step benchmark env SACCADE_DATA="$data" scripts/evidence_benchmark.py build/release/saccade "$out" docs/results/benchmark.md
 
 echo "The planner beside the oracle, baselines and sphere, on Slurm where it answers; figures go to docs/results/planner.md"
 step planner scripts/evidence_planner.py build/release/saccade "$out/planner" docs/results/planner.md

@@ -6,7 +6,7 @@ COMMAND is `compare …` or `benchmark …` without --out, which becomes FOLDER;
 answers (`sinfo`), each call merges what tasks have done and submits what is missing; FOLDER.submitted.json keeps how many runs were
 there then, and the jobs. Where these have ended, no run was added, and a slice failed, was killed, interrupted or lost, the call
 fails instead; the call after it submits again. Where no cluster answers any more, nothing runs, since the array may still be queued.
-Exit status 0: complete; 1: the program or a slice failed; 3: not complete, the same call goes on; 129, 130, 143: interrupted.
+Exit status 0: complete; 1: the program or a slice failed; 3: not complete, the same call goes on; 129, 130, 140, 143: interrupted.
 SACCADE_SLURM=off: runs here although a cluster answers.
 SACCADE_SLURM_OPTIONS: further options of --slurm, as "--partition long --time 2:00:00"."""
 import json
@@ -20,7 +20,7 @@ import sys
 
 FAILED = 1
 NOT_COMPLETE = 3
-INTERRUPTED = (129, 130, 143)  # exit statuses of saccade
+INTERRUPTED = (129, 130, 140, 143)  # exit statuses of saccade: SIGHUP, SIGINT, SIGUSR2, SIGTERM
 STILL_QUEUED = "still queued or running"
 ENDED = {"failed": "failed", "killed": "was killed", "interrupted": "was interrupted", "lost": "was lost"}  # states of slices
 ANSWER_S = 20
@@ -59,6 +59,7 @@ def jobs_in(said):
 
 
 def note_submission(folder, merged, jobs):
+    """Keeps for failed_slices how many runs were there at a submission, and its jobs."""
     submitted_file(folder).write_text(json.dumps({"merged": merged, "jobs": jobs}) + "\n")
 
 
@@ -72,10 +73,11 @@ def queued_jobs():
     return set(answer.stdout.split()) if answer.returncode == 0 else None
 
 
-def failed_slices(folder, status):
+def failed_slices(folder, status, recorded=0):
     """Slices that ended before they were done, where no run was added since the submission and none goes on; empty otherwise.
 
-    @param status  result of --status"""
+    @param status    result of --status
+    @param recorded  number of runs that are not in the plan any more since they are recorded; note_submission counts them too"""
     try:
         note = json.loads(submitted_file(folder).read_text())
         before, jobs = note["merged"], note.get("jobs", [])
@@ -83,7 +85,7 @@ def failed_slices(folder, status):
         return []
     slices = [one for one in status["slices"] if one["done"] < one["planned"]]
     failed = [one for one in slices if one["state"] in ENDED]
-    if status["runs"]["merged"] > before or any(one["state"] == "running" for one in slices) or not failed:
+    if recorded + status["runs"]["merged"] > before or any(one["state"] == "running" for one in slices) or not failed:
         return []
     queued = queued_jobs()
     if queued is None or queued.intersection(jobs):

@@ -5,19 +5,21 @@
 Two campaigns of 5,000 runs, each in a folder of its own under FOLDER, with its page (index.html). They grow seed by
 seed, so that an interrupted campaign has whole seeds of all scenes; the same call goes on. A seed that is whole is recorded
 beside DOCUMENT (evidence_records.py) and is not run again, on no machine; "check" in place of "table" runs the first and the last
-scene of each record again, and compares. Where a cluster answers
+scene of each record again, in a folder of their own, and compares. Where a cluster answers
 (`sinfo`), a campaign is submitted to Slurm as a job array, and a later call merges what its tasks have done; as long as no
 cluster answers that call, nothing runs. With "table", nothing runs. DOCUMENT gets the figures of the runs that are there, and
 says how many they are.
-Exit status 0: complete, and all that is held to was met; 1: something was missed; 2: a campaign failed, or a record differs; 3: not
-complete.
+Exit status 0: complete, and all that is held to was met; 1: something was missed; 2: a campaign failed, a record differs or has other
+settings than the runs, or there is none to check; 3: not complete.
 SACCADE_HEADLINE_SEEDS: how many seeds (10). SACCADE_SLURM=off: runs here although a cluster answers.
 SACCADE_SLURM_OPTIONS: further options of `compare --slurm`, as "--partition long --time 2:00:00"."""
+import enum
 import json
 import math
 import os
 import pathlib
 import shlex
+import shutil
 import statistics
 import subprocess
 import sys
@@ -26,10 +28,11 @@ from evidence_campaign import (INTERRUPTED, STILL_QUEUED, awaits_cluster, cluste
                                jobs_in, may_be_submitted, note_submission, print_awaiting, print_failed, slurm_options,
                                submitted_file)
 from evidence_planner import Figures, Held, calibration, student_t
-from evidence_records import Records
+from evidence_records import RecordError, Records
 
 FIRST_SCENE = 201
 SCENES = 100
+LAST_SCENE = FIRST_SCENE + SCENES - 1
 SEEDS = 10
 STRATEGIES = ("surface", "oracle", "sphere", "standard", "attention")
 CAMPAIGNS = {"arm": ("The arm", ["--robot", "comau"]), "flying": ("A flying camera", [])}
@@ -37,9 +40,29 @@ FIGURES = (("coverage", "coverage, %", 100, 1), ("coverage_area", "its area, %",
            ("unknown_near_objects", "unknown near objects", 1, 0), ("views", "views", 1, 2))
 
 
-def options(kind, seeds, scenes=f"clutter:{FIRST_SCENE}-{FIRST_SCENE + SCENES - 1}"):
-    return ["--scenes", scenes, "--strategies", ",".join(STRATEGIES), "--seeds", ",".join(map(str, seeds)), "--max-views", "5",
-            *CAMPAIGNS[kind][1]]
+class Here(enum.Enum):
+    """Answers to whether a campaign may be run on this machine."""
+    FREE = enum.auto()
+    AWAITS_CLUSTER = enum.auto()
+    FAILED = enum.auto()
+
+
+def seeds_text(seeds):
+    """Seeds in order, those without a gap between them as a range: "1-3,7"."""
+    ranges = []
+    for seed in sorted(seeds):
+        if ranges and ranges[-1][1] == seed - 1:
+            ranges[-1][1] = seed
+        else:
+            ranges.append([seed, seed])
+    return ",".join(str(first) if first == last else f"{first}-{last}" for first, last in ranges)
+
+
+def options(kind, seeds, scenes=f"clutter:{FIRST_SCENE}-{LAST_SCENE}"):
+    """Options of compare.
+
+    @param seeds  as --seeds takes them"""
+    return ["--scenes", scenes, "--strategies", ",".join(STRATEGIES), "--seeds", seeds, "--max-views", "5", *CAMPAIGNS[kind][1]]
 
 
 def compare(program, folder, arguments):
@@ -57,40 +80,57 @@ def compare(program, folder, arguments):
     return status == 0, said
 
 
-def is_free_here(program, folder, kind, seeds):
-    """Whether a campaign may be run here: merges its shards, and tells of one that a cluster may be at work on. None where that failed."""
-    campaign, wanted = folder / "campaign", options(kind, seeds)
+def wanted_seeds(records, seeds):
+    """Seeds that are not recorded."""
+    return [seed for seed in range(1, seeds + 1) if seed not in records.seeds()]
+
+
+def merge(program, folder, kind, records, seeds):
+    """Merges shards, and records seeds that are whole by that. Returns whether it ended well."""
+    every = range(1, 1 + max(seeds, SEEDS, *records.seeds()))  # a shard with none of the seeds that are named is refused
+    ended_well, _ = compare(program, folder, [*options(kind, seeds_text(every)), "--merge"])
+    if ended_well:
+        records.add_whole_seeds(folder / "campaign")
+    return ended_well
+
+
+def state_here(program, folder, kind, records, seeds):
+    """Merges shards of a campaign where no cluster is at work on it. Returns whether it may be run here."""
+    campaign = folder / "campaign"
     if may_be_submitted(campaign):
+        wanted = options(kind, seeds_text(wanted_seeds(records, seeds)))
         status = status_of(program, folder, wanted) if has_begun(campaign) else {}
         if status is None:
-            return None
+            return Here.FAILED
         if awaits_cluster(campaign, status.get("runs")):
             print_awaiting(campaign)
-            return False
-    elif has_shards(campaign) and not compare(program, folder, [*wanted, "--merge"])[0]:
-        return None
-    return True
+            return Here.AWAITS_CLUSTER
+    elif has_shards(campaign) and not merge(program, folder, kind, records, seeds):
+        return Here.FAILED
+    return Here.FREE
 
 
-def run_on_cluster(program, folder, kind, seeds):
+def run_on_cluster(program, folder, kind, records, seeds):
     """Returns false where the campaign failed."""
-    campaign, wanted, merged = folder / "campaign", options(kind, seeds), 0
-    if has_shards(campaign) and not compare(program, folder, [*wanted, "--merge"])[0]:
+    campaign = folder / "campaign"
+    if has_shards(campaign) and not merge(program, folder, kind, records, seeds):
         return False
+    wanted = wanted_seeds(records, seeds)
+    if not wanted:
+        return True
+    # Slices are those of the seeds that were submitted, so that the status is of these alone; recorded runs have left the plan.
+    arguments, recorded, merged = options(kind, seeds_text(wanted)), records.count(), 0
     if has_begun(campaign):
-        status = status_of(program, folder, wanted)
+        status = status_of(program, folder, arguments)
         if status is None:
             return False
         merged = status["runs"]["merged"]
-        if failed := failed_slices(campaign, status):
+        if failed := failed_slices(campaign, status, recorded):
             print_failed(failed)
             return False
-    if done_in(folder, seeds) == SCENES * len(STRATEGIES) * len(seeds):
-        submitted_file(campaign).unlink(missing_ok=True)
-        return True
-    submitted, said = compare(program, folder, [*wanted, "--slurm", *slurm_options()])
+    submitted, said = compare(program, folder, [*arguments, "--slurm", *slurm_options()])
     if submitted:
-        note_submission(campaign, merged, jobs_in(said))
+        note_submission(campaign, recorded + merged, jobs_in(said))
         return True
     return STILL_QUEUED in (said.rstrip().splitlines() or [""])[-1]
 
@@ -106,13 +146,6 @@ def status_of(program, folder, arguments):
             log.write(done.stderr)
         return None
     return json.loads(done.stdout)["result"]
-
-
-def done_in(folder, seeds):
-    """How many runs of these seeds the tables of a campaign have."""
-    if not (folder / "campaign/runs.csv").exists():
-        return 0
-    return sum(int(run["seed"]) in seeds for run in Figures(folder / "campaign", STRATEGIES).runs)
 
 
 def interval(values):
@@ -171,17 +204,17 @@ def hold(figures, so_far):
 def section(kind, folder, records, seeds):
     """Lines of the document, how many limits were missed, and whether runs are missing."""
     title, _ = CAMPAIGNS[kind]
-    command = " ".join(options(kind, range(1, seeds + 1))).replace(",".join(map(str, range(1, seeds + 1))), f"1-{seeds}")
+    command = shlex.join(options(kind, seeds_text(range(1, seeds + 1))))
     lines = [f"## {title}", "", "```sh", f"saccade compare {command} --out DIR", "```", ""]
-    figures = records.with_runs_of(folder / "campaign")
-    if not figures.runs:
-        return [*lines, "Not run yet.", ""], 0, True
+    every = records.with_runs_of(folder / "campaign")
     done = {}
-    for entry in figures.runs:
-        done.setdefault((entry["scene"], entry["seed"]), set()).add(entry["strategy"])
+    for entry in every.runs:
+        if 1 <= int(entry["seed"]) <= seeds:
+            done.setdefault((entry["scene"], entry["seed"]), set()).add(entry["strategy"])
+    if not done:
+        return [*lines, "Not run yet.", ""], 0, True
     whole = {key for key, strategies in done.items() if len(strategies) == len(STRATEGIES)}
-    figures.runs = [entry for entry in figures.runs if (entry["scene"], entry["seed"]) in whole]
-    figures.views = [view for view in figures.views if (view["scene"], view["seed"]) in whole]
+    figures = Figures(*([one for one in table if (one["scene"], one["seed"]) in whole] for table in (every.runs, every.views)))
     if len({scene for scene, _ in whole}) < 2:
         return [*lines, f"{len(whole)} pairs of a scene and a seed so far: too few for figures.", ""], 0, True
     count, scenes = len(figures.runs), len({scene for scene, _ in whole})
@@ -193,15 +226,17 @@ def section(kind, folder, records, seeds):
     return lines, held.missed, count < planned
 
 
-def run_here(program, folder, wanted, records):
+def run_here(program, folder, records, seeds):
     """Seed by seed, so that all campaigns grow together. Returns those that failed."""
-    free = {kind: is_free_here(program, folder / kind, kind, seeds) for kind, seeds in wanted.items()}
-    failed = [kind for kind, is_free in free.items() if is_free is None]
+    states = {kind: state_here(program, folder / kind, kind, records[kind], seeds) for kind in CAMPAIGNS
+              if wanted_seeds(records[kind], seeds)}
+    failed = [kind for kind, state in states.items() if state is Here.FAILED]
+    wanted = {kind: wanted_seeds(records[kind], seeds) for kind, state in states.items() if state is Here.FREE}
     for upto in range(1, 1 + max(map(len, wanted.values()), default=0)):
-        for kind, seeds in wanted.items():
-            if not free[kind] or kind in failed or len(seeds) < upto:
+        for kind, of_kind in wanted.items():
+            if kind in failed or len(of_kind) < upto:
                 continue
-            if not compare(program, folder / kind, options(kind, seeds[:upto]))[0]:
+            if not compare(program, folder / kind, options(kind, seeds_text(of_kind[:upto])))[0]:
                 failed.append(kind)
             records[kind].add_whole_seeds(folder / kind / "campaign")
     return failed
@@ -209,38 +244,49 @@ def run_here(program, folder, wanted, records):
 
 def run(program, folder, records, seeds):
     """Runs what is not recorded. Returns the campaigns that failed."""
-    wanted = {}
     for kind in CAMPAIGNS:
         records[kind].add_whole_seeds(folder / kind / "campaign")
-        wanted[kind] = [seed for seed in range(1, seeds + 1) if seed not in records[kind].seeds()]
-    wanted = {kind: of_kind for kind, of_kind in wanted.items() if of_kind}
-    if not cluster_answers():
-        return run_here(program, folder, wanted, records)
-    return [kind for kind, of_kind in wanted.items() if not run_on_cluster(program, folder / kind, kind, of_kind)]
+    if cluster_answers():
+        failed = [kind for kind in CAMPAIGNS if wanted_seeds(records[kind], seeds)
+                  and not run_on_cluster(program, folder / kind, kind, records[kind], seeds)]
+    else:
+        failed = run_here(program, folder, records, seeds)
+    for kind in CAMPAIGNS:
+        if not wanted_seeds(records[kind], seeds):
+            submitted_file(folder / kind / "campaign").unlink(missing_ok=True)
+    return failed
 
 
 def check(program, folder, records):
-    """Runs the first and the last scene of each record again. Returns false where a figure differs."""
-    same = True
-    for kind in CAMPAIGNS:
-        for seed in records[kind].seeds():
-            home = folder / f"check-{kind}-{seed}"
-            if not compare(program, home, options(kind, [seed], f"clutter:{FIRST_SCENE},clutter:{FIRST_SCENE + SCENES - 1}"))[0]:
-                return False
-            different = records[kind].differences(seed, home / "campaign")
-            print(f"  {kind}, seed {seed}: {'as recorded' if not different else 'differs: ' + '; '.join(different)}", flush=True)
-            same = same and not different
-    return same
+    """Runs the first and the last scene of each record again. Returns whether there is one, and nothing differs."""
+    scenes = [f"clutter:{FIRST_SCENE}", f"clutter:{LAST_SCENE}"]
+    outcomes = []
+    for kind, seed in ((kind, seed) for kind in CAMPAIGNS for seed in records[kind].seeds()):
+        home = folder / f"check-{kind}-{seed}"
+        if home.exists():
+            shutil.rmtree(home)  # runs of a check before this one would not be done again
+        ended_well, _ = compare(program, home, options(kind, str(seed), ",".join(scenes)))
+        different = records[kind].differences(seed, home / "campaign", scenes) if ended_well else [f"not run, see {home / 'log.txt'}"]
+        print(f"  {kind}, seed {seed}: {'as recorded' if not different else 'differs: ' + '; '.join(different)}", flush=True)
+        if not different:
+            shutil.rmtree(home)
+        outcomes.append(not different)
+    if not outcomes:
+        print("  there is no record to check")
+    return bool(outcomes) and all(outcomes)
 
 
-def main():
-    program, folder, document, *rest = sys.argv[1:]
-    folder = pathlib.Path(folder)
+def write_document(program, folder, document, rest):
+    """Runs what is asked for. Returns the exit status."""
     seeds = int(os.environ.get("SACCADE_HEADLINE_SEEDS", SEEDS))
-    records = {kind: Records(pathlib.Path(document).with_suffix(""), kind, STRATEGIES, SCENES) for kind in CAMPAIGNS}
+    records = {kind: Records(document.with_suffix(""), kind, STRATEGIES, SCENES) for kind in CAMPAIGNS}
     if rest == ["check"]:
         return 0 if check(program, folder, records) else 2
     failed = [] if rest == ["table"] else run(program, folder, records, seeds)
+    for kind in CAMPAIGNS:
+        records[kind].add_whole_seeds(folder / kind / "campaign")
+    kept = document.with_suffix("").name
+    link = f"Seeds that are whole are kept run by run in [{kept}/]({kept}). " if any(one.rows for one in records.values()) else ""
     incomplete, missed = [], 0
     lines = ["# The headline figures", "",
              "Written by `make evidence` (`scripts/evidence_headline.py`). A hundred scenes of random clutter that nothing was chosen by, "
@@ -248,17 +294,26 @@ def main():
              "± is half of the 95 % interval over scenes. Differences are paired by scene; bold ones differ from 0 by the paired "
              "t-test at 5 %, each by itself: nothing is corrected for the number of comparisons. Intervals of ratios are by the delta "
              "method on paired scenes; the ratio itself is held to its limit, not an end of its interval. While runs are missing, "
-             "met and missed are said \"so far\". Seeds that are whole are kept run by run in [headline/](headline). [Metrics](../reference/metrics.md), [strategies](../guides/exploration.md).", ""]
+             "met and missed are said \"so far\". "
+             f"{link}[Metrics](../reference/metrics.md), [strategies](../guides/exploration.md).", ""]
     for kind in CAMPAIGNS:
-        records[kind].add_whole_seeds(folder / kind / "campaign")
         told, missed_here, unfinished = section(kind, folder / kind, records[kind], seeds)
         if unfinished:
             incomplete.append(kind)
         lines += told
         missed += missed_here
-    pathlib.Path(document).write_text("\n".join(lines).rstrip() + "\n")
+    document.write_text("\n".join(lines).rstrip() + "\n")
     print(f"  {document}: {missed} missed; failed: {', '.join(failed) or 'none'}; not complete: {', '.join(incomplete) or 'none'}")
     return 2 if failed else 1 if missed else 3 if incomplete else 0
+
+
+def main():
+    program, folder, document, *rest = sys.argv[1:]
+    try:
+        return write_document(program, pathlib.Path(folder), pathlib.Path(document), rest)
+    except RecordError as error:
+        print(error, file=sys.stderr)
+        return 2
 
 
 if __name__ == "__main__":

@@ -64,25 +64,26 @@ def campaigns():
 
 
 class Figures:
-    """The tables of a campaign that was run, or as far as it was."""
+    """Runs and views of a campaign, or of several."""
 
-    def __init__(self, folder, strategies):
-        def read(name):
+    def __init__(self, runs, views):
+        self.runs, self.views = runs, views
+        self.scenes = len({run["scene"] for run in runs})
+
+    @classmethod
+    def read(cls, folder, strategies):
+        """Reads the tables of a campaign that was run, or as far as it was."""
+        def rows(name):
             with (folder / name).open() as file:
                 return [row for row in csv.DictReader(file) if row["strategy"] in strategies]
 
-        self.runs = read("runs.csv")
-        self.views = read("views.csv")
-        self.scenes = len({run["scene"] for run in self.runs})
+        return cls(rows("runs.csv"), rows("views.csv"))
 
     def beside(self, other):
         """These figures with those of another campaign's runs in the same scenes."""
         scenes = {run["scene"] for run in self.runs}
-        joined = Figures.__new__(Figures)
-        joined.runs = self.runs + [run for run in other.runs if run["scene"] in scenes]
-        joined.views = self.views + [view for view in other.views if view["scene"] in scenes]
-        joined.scenes = self.scenes
-        return joined
+        return Figures(self.runs + [run for run in other.runs if run["scene"] in scenes],
+                       self.views + [view for view in other.views if view["scene"] in scenes])
 
     def strategies(self):
         return list(dict.fromkeys(run["strategy"] for run in self.runs))
@@ -301,7 +302,7 @@ def main():
     if incomplete:
         print(f"  {document} stays as it is; failed: {', '.join(failed) or 'none'}; not complete: {', '.join(incomplete)}")
         return 2 if failed else NOT_COMPLETE
-    done = {name: Figures(folder / name, known[name]["strategies"]) for name in known
+    done = {name: Figures.read(folder / name, known[name]["strategies"]) for name in known
             if (folder / name / "runs.csv").exists()}
     lines = ["# The planner, measured", "",
              "Written by `make evidence` (`scripts/evidence_planner.py`). One seed a scene, the noise of a Kinect v1; means "

@@ -2,8 +2,10 @@
 #include "compare_run.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <iomanip>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "compare_jobs.hpp"
@@ -127,19 +129,6 @@ std::string now_text(const CampaignState& state, std::size_t done) {
          (state.left_out.empty() ? "" : "          " + state.left_out + '\n');
 }
 
-/// How many runs each version of the program made; empty where this one made all.
-json versions_json(const std::vector<CampaignEntry>& runs) {
-  std::map<std::string, std::size_t> versions;
-  for (const CampaignEntry& run : runs) ++versions[run.program_version];
-  versions.erase(SACCADE_VERSION);
-  if (versions.empty()) return {};
-  json all = versions;
-  const auto own = std::count_if(runs.begin(), runs.end(),
-                                 [](const CampaignEntry& run) { return run.program_version == SACCADE_VERSION; });
-  if (own > 0) all[SACCADE_VERSION] = own;
-  return all;
-}
-
 /// "12 runs by 0.1.0, 8 by 0.2.0: versions may differ in their figures".
 std::string versions_text(const json& versions) {
   std::string text;
@@ -162,40 +151,31 @@ Result<Outcome> report(Context& context, const Comparison& comparison, const Cam
   Outcome outcome{.result = campaign_json(comparison, results, state.planned)};
   outcome.result["runs"].update(state.now);
   SACCADE_TRY(outcome.text, part(state.campaign, results, outcome.result));
-  const json versions = versions_json(results.runs);
-  if (!versions.empty()) outcome.result["versions"] = versions;
+  const json versions = outcome.result.value("versions", json());
   outcome.text +=
       now_text(state, results.runs.size()) + versions_text(versions) + "report    " + (out / kPageFile).string() + '\n';
   if (std::filesystem::exists(out / kShardsFolder)) {
-    SACCADE_TRY(const std::vector<SliceProgress> slices, progress_of(comparison, comparison.plan(state.found), 0));
-    outcome.result["slices"] = slices_json(slices);
+    SACCADE_CHECK(add_slices(outcome.result, comparison, results.runs.size(), 0));
   }
   SACCADE_CHECK(
       server::write_report(out / kPageFile, context.document(outcome.result), comparison_details(comparison, results)));
   return outcome;
 }
 
-/// Shows on the page how a slice or a merge has ended.
-void refresh_page(Context& context, const Comparison& comparison) {
-  if (const Status page = write_page_of_slices(context, comparison); !page) {
-    context.bar().warn("the page was not written: " + page.error().to_string());
-  }
-}
-
 Result<CampaignState> merged_with_page(Context& context, const Comparison& comparison) {
   Result<CampaignState> state = merge_here(context, comparison);
   if (state || shard_records(comparison.options().out).empty()) return state;
-  refresh_page(context, comparison);
-  return with_way_out(state.error(), comparison.options());
+  if (state.error().code == Errc::corrupt_data || context.folder() != nullptr) refresh_page(context, comparison);
+  return with_set_aside_hint(state.error(), comparison.options());
 }
 
+/// Near a time limit there is none left for the page, which the next try writes.
 Result<Outcome> run_slice_with_page(Context& context, const Comparison& comparison) {
   const CompareOptions& options = comparison.options();
   Result<Outcome> outcome = run_slice(context, comparison);
   std::error_code ignored;
-  if (std::filesystem::exists(shard_folder(options.out, *options.machines.slice), ignored)) {
-    refresh_page(context, comparison);
-  }
+  const bool began = std::filesystem::exists(shard_folder(options.out, *options.machines.slice), ignored);
+  if (began && !time_is_up()) refresh_page(context, comparison);
   return outcome;
 }
 
@@ -208,16 +188,18 @@ FolderOption campaign_folder() {
           .opened_by_command = true};
 }
 
+Status open_campaign_folder(Context& context) {
+  const char* marker = campaign_marker(context.out());
+  return context.open_folder(marker == nullptr ? "" : marker);
+}
+
 Result<Outcome> run_campaign(Context& context, const Comparison& comparison, const ReportPart& part) {
   const MachineOptions& machines = comparison.options().machines;
   if (machines.list) return list_runs(comparison);
   if (machines.status) return slice_status(comparison);
   if (machines.slice) return run_slice_with_page(context, comparison);
-  if (machines.set_aside) {
-    SACCADE_TRY(const std::vector<std::string> lines, set_aside_damaged(comparison.options().out));
-    for (const std::string& line : lines) context.bar().warn(line);
-  }
   if (machines.slurm) return submit_slices(context, comparison);
+  if (machines.set_aside) SACCADE_CHECK(set_aside_damaged(context, comparison.options().out));
   SACCADE_TRY(const CampaignState state,
               machines.merge ? merged_with_page(context, comparison) : run_here(context, comparison));
   SACCADE_TRY(Outcome outcome, report(context, comparison, state, part));

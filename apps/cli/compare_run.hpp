@@ -14,6 +14,9 @@ namespace saccade::cli {
 /// The folder of a campaign, as commands declare it.
 [[nodiscard]] FolderOption campaign_folder();
 
+/// Opens DIR as Context::open_folder does, and knows a campaign by its slices as well.
+[[nodiscard]] Status open_campaign_folder(Context& context);
+
 /// Part of the report that a command adds: writes files of its own into the folder, adds to the result, and
 /// returns the text for people.
 using ReportPart =

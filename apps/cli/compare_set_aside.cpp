@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare_set_aside.hpp"
 
+#include <algorithm>
+#include <string>
+#include <system_error>
+
 #include "compare_shards.hpp"
+#include "compare_slices.hpp"
+#include "saccade/trial/campaign.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -23,18 +29,19 @@ fs::path free_name(const fs::path& out, const fs::path& shard) {
   return name;
 }
 
+Error still_runs(const fs::path& file) {
+  return {Errc::invalid_argument, "is damaged, and its slice still runs; end it before it is set aside", file.string()};
+}
+
 }  // namespace
 
-Result<std::vector<std::string>> set_aside_damaged(const fs::path& out) {
-  std::vector<std::string> lines;
+Status set_aside_damaged(Context& context, const fs::path& out) {
   for (const fs::path& file : shard_files(out)) {
     const Status whole = check_shard(file);
     if (whole || whole.error().code != Errc::corrupt_data) continue;
     const fs::path shard = file.parent_path();
-    if (read_shard_record(shard, {}).state == ShardState::running) {
-      return Error{Errc::invalid_argument, "is damaged, and its slice still runs; end it before it is set aside",
-                   file.string()};
-    }
+    if (read_shard_record(shard, {}).state == ShardState::running) return still_runs(file);
+    SACCADE_TRY(const RunFolder locked, RunFolder::open(shard, {}, {}, true));  // no slice begins meanwhile
     const fs::path target = free_name(out, shard);
     std::error_code code;
     fs::create_directories(target.parent_path(), code);
@@ -42,15 +49,25 @@ Result<std::vector<std::string>> set_aside_damaged(const fs::path& out) {
     if (code) {
       return Error{Errc::io_failure, "cannot be moved to " + target.string() + ": " + code.message(), shard.string()};
     }
-    lines.push_back(whole.error().to_string() + "; set aside as " + target.string());
+    context.bar().warn(whole.error().to_string() + "; set aside as " + target.string());
   }
-  return lines;
+  return {};
 }
 
-Error with_way_out(Error error, const CompareOptions& options) {
+std::vector<std::string> set_aside_shards(const fs::path& out) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator{out / kSetAsideFolder, ignored}) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Error with_set_aside_hint(Error error, const CompareOptions& options) {
   if (error.code != Errc::corrupt_data || options.machines.set_aside || !options.machines.merged.empty()) return error;
   for (const fs::path& file : shard_files(options.out)) {
-    if (error.context != file.string()) continue;
+    if (!error.context.starts_with(file.string())) continue;
     error.message += "; --set-aside moves it away and goes on without it";
     break;
   }

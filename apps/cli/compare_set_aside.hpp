@@ -7,18 +7,19 @@
 #include <vector>
 
 #include "compare_options.hpp"
+#include "context.hpp"
 
 namespace saccade::cli {
 
-constexpr const char* kSetAsideFolder{"set-aside"};
-
 /// Reads all shards of a campaign from end to end, and moves the folders of those that are damaged or were cut short to
-/// DIR/set-aside, where nothing is read. Their runs count as missing then. invalid_argument for one whose slice runs;
-/// io_failure where one cannot be moved.
-/// @return a line on each, in the order of their names
-[[nodiscard]] Result<std::vector<std::string>> set_aside_damaged(const std::filesystem::path& out);
+/// DIR/set-aside, where nothing is read; warns of each. Their runs count as missing then. invalid_argument for one
+/// whose slice runs; io_failure where one cannot be moved.
+[[nodiscard]] Status set_aside_damaged(Context& context, const std::filesystem::path& out);
+
+/// Names in DIR/set-aside, sorted.
+[[nodiscard]] std::vector<std::string> set_aside_shards(const std::filesystem::path& out);
 
 /// Adds to an error on a damaged shard of the campaign that --set-aside moves it away.
-[[nodiscard]] Error with_way_out(Error error, const CompareOptions& options);
+[[nodiscard]] Error with_set_aside_hint(Error error, const CompareOptions& options);
 
 }  // namespace saccade::cli

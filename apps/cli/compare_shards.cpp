@@ -2,15 +2,15 @@
 #include "compare_shards.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
-#include <ctime>
 #include <iomanip>
 #include <sstream>
 
 #include "compare_jobs.hpp"
 #include "compare_mismatch.hpp"
+#include "compare_page.hpp"
 #include "compare_run.hpp"
+#include "compare_set_aside.hpp"
 #include "interrupt.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/files/leftovers.hpp"
@@ -20,15 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// UTC, as 2024-06-30T12:00:00Z.
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  ::gmtime_r(&now, &parts);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
 
 std::string slice_text(const Slice& slice) {
   return std::to_string(slice.index) + " of " + std::to_string(slice.count);
@@ -48,7 +39,7 @@ std::string slurm_job() {
 Status check_campaign_folder(const fs::path& out, bool force) {
   const FolderOption rule = campaign_folder();
   std::error_code ignored;
-  if (force || fs::is_regular_file(out / kCampaignFile, ignored) || !shard_records(out).empty()) return {};
+  if (force || campaign_marker(out)) return {};
   for (const fs::directory_entry& entry : fs::directory_iterator{out, ignored}) {
     const std::string name = entry.path().filename().string();
     const bool own =
@@ -137,6 +128,13 @@ class ShardFilter {
   CampaignIndex alike_;  ///< keys without their settings
 };
 
+/// Brings a file back to what it was before a transaction that could not be written: SQLite leaves that to the next
+/// reader.
+void roll_back(const fs::path& file) {
+  CampaignIndex unused;
+  if (const Result<Campaign> campaign = Campaign::open_to_read(file)) static_cast<void>(unused.add(*campaign));
+}
+
 /// Merges into a campaign, which keeps every byte where that fails, or into one that `open` makes, and removes that
 /// again.
 Result<CampaignMerge> merge_into(const fs::path& file, const std::vector<fs::path>& shards, const AcceptRun& accept,
@@ -144,11 +142,15 @@ Result<CampaignMerge> merge_into(const fs::path& file, const std::vector<fs::pat
   std::error_code code;
   const bool was_there = fs::exists(file, code);
   if (was_there && fs::file_size(file, code) > 0) {
-    CampaignMerge merged;
-    {
+    const auto merge = [&]() -> Result<CampaignMerge> {
       SACCADE_TRY(const Campaign campaign,
                   Campaign::open_to_read(file));  // opening it to write would change its header
-      SACCADE_TRY(merged, campaign.merge(shards, accept));
+      return campaign.merge(shards, accept);
+    };
+    const Result<CampaignMerge> merged = merge();
+    if (!merged) {
+      roll_back(file);
+      return merged;
     }
     SACCADE_CHECK(open());
     return merged;
@@ -203,7 +205,12 @@ Result<std::size_t> run_recorded(Context& context, const Comparison& comparison,
   SACCADE_CHECK(add_shard(shard.path(), found));
   const std::vector<PlannedRun> runs = runs_of(record.slice, comparison.plan(found), comparison.options().equal_views);
   SACCADE_CHECK(check_versions(comparison, runs, shard));
-  return run_missing(comparison, runs, found, shard, context.executor().threads(), context.bar());
+  SACCADE_TRY(const std::size_t now,
+              run_missing(comparison, runs, found, shard, context.executor().threads(), context.bar()));
+  if (now == 0 && done_of(runs) < runs.size() && time_is_up()) {  // it would come back for ever
+    return Error{Errc::invalid_argument, "the time limit came before a run was done; give tasks more time", {}};
+  }
+  return now;
 }
 
 }  // namespace
@@ -216,13 +223,10 @@ Result<Outcome> run_slice(Context& context, const Comparison& comparison) {
   ShardRecord record = next_try(folder, slice);
   SACCADE_CHECK(write_json(folder / kShardRecord, to_json(record)));
   for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
-  Result<std::size_t> now = [&] {
+  const Result<std::size_t> now = [&] {
     const RecordRenewal renewal{folder.path()};
     return run_recorded(context, comparison, folder.path(), record);
   }();
-  if (now && *now == 0 && time_is_up()) {
-    now = Error{Errc::invalid_argument, "the time limit came before a run was done; give tasks more time", {}};
-  }
   record.ended = utc_now();
   record.state = !now ? ShardState::failed : interrupted() ? ShardState::interrupted : ShardState::done;
   if (!now) record.error = now.error().to_string();
@@ -251,13 +255,6 @@ Result<Outcome> run_slice(Context& context, const Comparison& comparison) {
   return outcome;
 }
 
-Status open_campaign_folder(Context& context) {
-  std::error_code ignored;
-  const bool by_slices =
-      !fs::is_regular_file(context.out() / kCampaignFile, ignored) && !shard_records(context.out()).empty();
-  return context.open_folder(by_slices ? kShardsFolder : "");
-}
-
 Status check_not_emptied(const fs::path& shard) {
   std::error_code code;
   const std::uintmax_t bytes = fs::file_size(shard, code);
@@ -267,16 +264,17 @@ Status check_not_emptied(const fs::path& shard) {
                shard.string()};
 }
 
-void record_failed_start(const CompareOptions& options, bool force, const Error& error) {
-  if (!options.machines.slice || !check_campaign_folder(options.out, force)) return;
+void record_failed_start(const Context& context, const CompareOptions& options, const Error& error) {
+  if (!options.machines.slice || !check_campaign_folder(options.out, context.force())) return;
   const Slice slice = *options.machines.slice;
-  const Result<RunFolder> folder = open_shard(options.out, slice, force);
+  const Result<RunFolder> folder = open_shard(options.out, slice, context.force());
   if (!folder) return;
   ShardRecord record = next_try(*folder, slice);
   record.state = ShardState::failed;
   record.ended = record.began;
   record.error = error.to_string();
   static_cast<void>(write_json(*folder / kShardRecord, to_json(record)));
+  static_cast<void>(write_page_of_failed_start(context, options.out));
 }
 
 Result<CampaignIndex> done_in(const fs::path& out, const std::vector<fs::path>& shards, std::vector<Error>* broken) {
@@ -332,6 +330,9 @@ Result<Outcome> slice_status(const Comparison& comparison) {
       text << "slice " << slice_text(slice.record.slice)
            << (slice.record.state == ShardState::unknown ? ": " : " failed: ") << slice.record.error << '\n';
     }
+  }
+  if (const std::vector<std::string> aside = set_aside_shards(out); !aside.empty()) {
+    text << "set aside: " << joined(aside) << '\n';
   }
   json unreadable = json::array();
   for (const Error& error : broken) {

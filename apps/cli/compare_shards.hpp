@@ -13,17 +13,14 @@ namespace saccade::cli {
 [[nodiscard]] Result<Outcome> run_slice(Context& context, const Comparison& comparison);
 
 /// Notes in the record of the slice that is asked for, if one is, that it failed before it began: its scenes or its arm
-/// cannot be read. Leaves everything as it is where the record cannot be written.
-void record_failed_start(const CompareOptions& options, bool force, const Error& error);
+/// cannot be read; and writes the page. Leaves everything as it is where the record cannot be written.
+void record_failed_start(const Context& context, const CompareOptions& options, const Error& error);
 /// Returns what is needed to begin; where that failed, the record of the slice tells so (record_failed_start).
 template <class T>
 [[nodiscard]] Result<T> recorded(const Context& context, const CompareOptions& options, Result<T> needed) {
-  if (!needed) record_failed_start(options, context.force(), needed.error());
+  if (!needed) record_failed_start(context, options, needed.error());
   return needed;
 }
-
-/// Opens DIR as Context::open_folder does, and knows a campaign by its slices as well.
-[[nodiscard]] Status open_campaign_folder(Context& context);
 
 /// Refuses the empty file of a slice that is done, which has at least tables. corrupt_data.
 [[nodiscard]] Status check_not_emptied(const std::filesystem::path& shard);

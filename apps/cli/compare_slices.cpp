@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <ctime>
 #include <set>
 #include <utility>
 
@@ -178,6 +179,21 @@ std::vector<ShardRecord> shard_records(const fs::path& out) {
     if (const auto slice = slice_of(folder.filename().string())) records.push_back(read_shard_record(folder, *slice));
   }
   return records;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
+const char* campaign_marker(const fs::path& out) {
+  std::error_code ignored;
+  if (fs::is_regular_file(out / kCampaignFile, ignored)) return kCampaignFile;
+  if (!shard_records(out).empty()) return kShardsFolder;
+  return fs::is_directory(out / kSetAsideFolder, ignored) ? kSetAsideFolder : nullptr;
 }
 
 Result<std::vector<fs::path>> campaign_files(const fs::path& folder) {

@@ -18,6 +18,7 @@ namespace saccade::cli {
 constexpr const char* kCampaignFile{"campaign.sqlite"};
 constexpr const char* kShardsFolder{"shards"};
 constexpr const char* kLogsFolder{"logs"};
+constexpr const char* kSetAsideFolder{"set-aside"};
 constexpr const char* kShardRecord{"shard.json"};
 
 /// Returns the slice's part of the plan: runs that follow each other, so that few slices share a scene. Runs of which
@@ -46,6 +47,9 @@ class SliceCounter {
 /// DIR/shards/2-of-10.
 [[nodiscard]] std::filesystem::path shard_folder(const std::filesystem::path& out, const Slice& slice);
 
+/// Name of what tells that DIR holds a campaign: its file, a slice, or one that was set aside; nullptr without any.
+[[nodiscard]] const char* campaign_marker(const std::filesystem::path& out);
+
 /// How a slice came to its end, or that it goes on.
 enum class ShardState : std::uint8_t { waiting, running, done, failed, interrupted, killed, lost, unknown };
 inline constexpr auto kShardStateNames = make_names<ShardState>({{ShardState::waiting, "waiting"},
@@ -69,6 +73,8 @@ struct ShardRecord {
   std::string error{};  ///< why it failed; unknown: why its record cannot be read
 };
 [[nodiscard]] std::string machine_name();
+/// The time now, UTC, as 2024-06-30T12:00:00Z.
+[[nodiscard]] std::string utc_now();
 [[nodiscard]] nlohmann::json to_json(const ShardRecord& record);
 [[nodiscard]] Result<ShardRecord> shard_record_from_json(const nlohmann::json& json);
 /// Renews the time of a record's file every minute, from a thread of its own, so that other machines see that the slice

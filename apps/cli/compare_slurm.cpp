@@ -11,6 +11,8 @@
 #include <sstream>
 
 #include "compare_page.hpp"
+#include "compare_run.hpp"
+#include "compare_set_aside.hpp"
 #include "compare_shards.hpp"
 #include "options.hpp"
 #include "saccade/core/fnv1a.hpp"
@@ -99,15 +101,31 @@ std::string job_name(const fs::path& out) {
 }
 
 /// Seconds before the time limit at which a task is told to keep what it has; Slurm may be a minute early.
-constexpr const char* kWarningBefore_s{"60"};
+constexpr int kWarningBefore_s{60};
 
-/// Tells whether a time limit of sbatch leaves time for work before the warning: five minutes or more, or what the
-/// partition grants. Limits of Slurm: minutes, minutes:seconds, hours:minutes:seconds, days-hours[:minutes[:seconds]].
-bool is_worth_a_warning(const std::string& limit) {
-  constexpr std::uint64_t kLeast_min{5};
-  if (limit.find('-') != std::string::npos || std::count(limit.begin(), limit.end(), ':') > 1) return true;
-  const auto minutes = whole_number(limit.substr(0, limit.find(':')));
-  return !minutes || *minutes == 0 || *minutes >= kLeast_min;  // 0 and UNLIMITED: no limit
+/// Minutes of a time limit as sbatch takes it: minutes, minutes:seconds, hours:minutes:seconds, days-hours,
+/// days-hours:minutes, days-hours:minutes:seconds; nullopt for none, 0 and words such as UNLIMITED included.
+std::optional<double> minutes_of(const std::string& limit) {
+  const std::size_t dash = limit.find('-');
+  std::vector<double> parts;
+  std::istringstream text{dash == std::string::npos ? limit : limit.substr(dash + 1)};
+  for (std::string part; std::getline(text, part, ':');) {
+    const auto number = whole_number(part);
+    if (!number) return std::nullopt;
+    parts.push_back(static_cast<double>(*number));
+  }
+  parts.resize(3, 0.0);
+  const bool hours_first = dash != std::string::npos || std::count(limit.begin(), limit.end(), ':') == 2;
+  const double minutes = hours_first ? 60.0 * parts[0] + parts[1] + parts[2] / 60.0 : parts[0] + parts[1] / 60.0;
+  const auto days = whole_number(limit.substr(0, dash));
+  const double all = minutes + (dash == std::string::npos || !days ? 0.0 : 1440.0 * static_cast<double>(*days));
+  return all > 0.0 ? std::optional{all} : std::nullopt;
+}
+
+/// Tells whether a time limit leaves time for work before the warning.
+bool leaves_time_to_warn(const std::string& limit) {
+  constexpr double kLeast_min{5.0};
+  return minutes_of(limit).value_or(kLeast_min) >= kLeast_min;
 }
 
 /// Options of sbatch for both jobs. They stand in the script, and are given to sbatch as well, since there they count
@@ -122,7 +140,7 @@ std::vector<std::string> options_of_both(const SliceJob& job) {
 
 std::vector<std::string> options_of_array(const SliceJob& job) {
   std::vector<std::string> options = options_of_both(job);
-  if (is_worth_a_warning(job.options.time)) options.push_back(std::string{"--signal=B:USR2@"} + kWarningBefore_s);
+  if (leaves_time_to_warn(job.options.time)) options.push_back("--signal=B:USR2@" + std::to_string(kWarningBefore_s));
   options.push_back("--array=" + ranges_of(job.wanted));
   options.push_back("--cpus-per-task=" + std::to_string(job.options.cpus));
   return options;
@@ -160,7 +178,7 @@ std::string begin_in(const SliceJob& job, const std::string& log) {
 /// other signals to all processes of a job, and SIGUSR2 to the script alone.
 constexpr const char* kWaitForTask{
     "task=$!\n"
-    "trap 'kill -USR2 \"$task\"' USR2\n"
+    "trap 'kill -USR2 \"$task\" 2>/dev/null || :' USR2\n"
     "trap : INT TERM\n"
     "while :; do\n"
     "  status=0\n"
@@ -317,8 +335,8 @@ std::string merge_script(const SliceJob& job) {
 
 Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
   const CompareOptions& options = comparison.options();
-  const std::vector<fs::path> shards = shard_files(options.out);
   if (options.machines.job.dry_run) {
+    const std::vector<fs::path> shards = shard_files(options.out);
     SACCADE_TRY(const CampaignIndex found, done_in(options.out, shards));
     SACCADE_TRY(const SliceJob job, job_of(context, comparison, comparison.plan(found)));
     const std::string script = job.wanted.empty() ? std::string{"# all runs are done\n"} : array_script(job);
@@ -328,9 +346,18 @@ Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
   SACCADE_CHECK(open_campaign_folder(context));
   const fs::path out = fs::absolute(options.out).lexically_normal();
   SACCADE_CHECK(check_queue(job_name(out)));
+  if (options.machines.set_aside) SACCADE_CHECK(set_aside_damaged(context, options.out));
+  std::error_code ignored;
+  const bool was_there = fs::exists(options.out / kCampaignFile, ignored);
   SACCADE_TRY(const Campaign campaign, Campaign::open(options.out / kCampaignFile));
-  SACCADE_TRY(const ShardMerge merged,
-              merge_shards(comparison, shards, [&campaign]() -> Result<const Campaign*> { return &campaign; }));
+  const Result<ShardMerge> merge = merge_shards(comparison, shard_files(options.out),
+                                                [&campaign]() -> Result<const Campaign*> { return &campaign; });
+  if (!merge) {
+    if (!was_there) fs::remove(options.out / kCampaignFile, ignored);
+    refresh_page(context, comparison);
+    return with_set_aside_hint(merge.error(), options);
+  }
+  const ShardMerge& merged = *merge;
   if (const std::string left_out = left_out_text(merged); !left_out.empty()) context.bar().note(left_out);
   CampaignIndex found;
   SACCADE_CHECK(found.add(campaign));
@@ -344,9 +371,7 @@ Result<Outcome> submit_slices(Context& context, const Comparison& comparison) {
   if (job.wanted.empty())
     return Outcome{.result = std::move(result), .text = "all runs are done; nothing was submitted\n"};
   SACCADE_TRY(const SubmittedJobs jobs, submit_jobs(job));
-  if (const Status page = write_page_of_slices(context, comparison, job.slices); !page) {
-    context.bar().warn("the page was not written: " + page.error().to_string());
-  }
+  refresh_page(context, comparison, job.slices);
   result["array_job"] = jobs.array;
   result["merge_job"] = jobs.merge;
   return Outcome{.result = std::move(result),

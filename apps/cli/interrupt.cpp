@@ -15,7 +15,12 @@ std::atomic<Progress*> cancels{nullptr};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Progress*>::is_always_lock_free);
 
 extern "C" void on_signal(int signal) {
-  if (caught.exchange(signal) != 0) ::_exit(128 + signal);
+  if (signal == SIGUSR2) {  // may come twice; another signal still ends the program at once
+    int none{0};
+    if (!caught.compare_exchange_strong(none, signal)) return;
+  } else if (caught.exchange(signal) != 0) {
+    ::_exit(128 + signal);
+  }
   if (Progress* progress = cancels.load()) progress->request_cancel();
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Ctrl-C, SIGTERM, SIGHUP and SIGUSR2 (a scheduler's time limit is near): the first asks the work to stop and keep what
-// it has, the second ends the program at once.
+// it has, the second ends the program at once, unless it is SIGUSR2 again.
 
 #include "saccade/core/progress.hpp"
 

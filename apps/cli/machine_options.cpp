@@ -75,6 +75,7 @@ Slice parse_slice(const std::string& text) {
 
 /// A word that is put into a script as it is.
 void require_word(const std::string& option, const std::string& text) {
+  if (text.starts_with('-')) usage_error(option, "takes no '" + text + "'");
   constexpr std::string_view kPlain{"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._:,-"};
   if (text.find_first_not_of(kPlain) != std::string::npos) {
     usage_error(option, "takes letters, digits and . _ : , - only, not '" + text + "'");

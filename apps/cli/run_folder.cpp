@@ -45,14 +45,17 @@ bool is_unrepeatable(const fs::path& document) {
   return result != read->end() && result->is_object() && result->value("unrepeatable", nlohmann::json(false)) == true;
 }
 
-/// Removes the unfinished files of runs that were killed. No other run writes here: the caller holds the lock.
+/// Removes the unfinished files of runs that were killed. No other run writes here: the caller holds the lock. Slices
+/// of a campaign write its page without it.
 void sweep(const fs::path& path) {
   std::error_code ignored;
   std::vector<fs::path> leftovers;
   for (const fs::directory_entry& entry : fs::directory_iterator{path, ignored}) {
     if (is_leftover(entry.path().filename().string())) leftovers.push_back(entry.path());
   }
-  for (const fs::path& leftover : leftovers) fs::remove(leftover, ignored);
+  for (const fs::path& leftover : leftovers) {
+    if (!is_written_to(leftover)) fs::remove(leftover, ignored);
+  }
 }
 
 Status probe(const fs::path& path) {

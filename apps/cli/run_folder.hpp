@@ -15,9 +15,9 @@ namespace saccade::cli {
 /// it is removed again.
 class RunFolder {
  public:
-  /// Makes the folder, or takes one that is empty, holds an earlier run (nothing but `own_files`, or a JSON document
-  /// `marker`) or is forced. A document that says that its run cannot be repeated is not written over unless forced. A
-  /// write of some size is tried, so that a folder that cannot be written and a full disk
+  /// Makes the folder, or takes one that is empty, holds an earlier run (nothing but `own_files`, or a file or
+  /// folder `marker`) or is forced. A `marker` that is a document and says that its run cannot be repeated is not
+  /// written over unless forced. A write of some size is tried, so that a folder that cannot be written and a full disk
   /// show before the work. Half-written files that a killed run left are removed. The folder is locked while this
   /// lives. invalid_argument for foreign content, for such a run, or when another run holds the lock; io_failure.
   [[nodiscard]] static Result<RunFolder> open(const std::filesystem::path& path,

@@ -228,6 +228,8 @@ TEST(CompareSlices, ASliceThatCannotBeginLeavesARecord) {
     const auto record = nlohmann::json::parse(std::ifstream{out / "shards/0-of-2/shard.json"});
     EXPECT_EQ(record.at("state"), "failed");
     EXPECT_NE(record.at("error").get<std::string>().find("gone"), std::string::npos) << record;
+    const nlohmann::json slices = report_in(out / "index.html").at("record").at("result").at("slices");
+    EXPECT_EQ(slices.at(0).at("error"), record.at("error")) << slices;
   }
 }
 

@@ -9,8 +9,6 @@ import math
 import os
 import pathlib
 import random
-import shutil
-import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -21,10 +19,10 @@ sys.path.insert(0, str(SCRIPTS))
 import evidence_campaign  # noqa: E402
 import evidence_headline  # noqa: E402
 import evidence_planner  # noqa: E402
-import evidence_records  # noqa: E402
 
-RUNS = ("scene", "strategy", "noise", "seed", "initial_coverage", "coverage", "coverage_area", "unknown_near_objects", "views")
-VIEWS = ("scene", "strategy", "noise", "seed", "number", "gain", "gain_observed", "coverage")
+RUNS = ("scene", "scene_hash", "strategy", "noise", "seed", "initial_coverage", "coverage", "coverage_area", "unknown_near_objects", "views",
+        "program_version", "settings")
+VIEWS = ("scene", "scene_hash", "strategy", "noise", "seed", "number", "gain", "gain_observed", "coverage")
 STAND_IN = """#!/bin/sh
 folder=$(dirname "$0")
 echo "$*" >>"$folder/calls"
@@ -33,6 +31,32 @@ case " $* " in
   *" --slurm "*) printf 'array     job 12: 3 runs in 3 slices\\nmerge     job 13, when it has ended\\n' ;;
 esac
 """
+
+
+def settings_of(strategy, revision=3):
+    own = {"surface": {"least_share": 0.005}, "attention": {"rival_share": 0.5}}
+    return {"robot": "free", "revision": revision, **own.get(strategy, {})}
+
+
+def write_tables(campaign, worst="attention", scenes=range(201, 301), seeds=(1,), settings=settings_of, version="0.2.0", hashes="e8{}"):
+    """Tables of a campaign, in which strategy `worst` has the least of everything."""
+    campaign.mkdir(parents=True, exist_ok=True)
+    with (campaign / "runs.csv").open("w") as runs, (campaign / "views.csv").open("w") as views:
+        runs, views = csv.DictWriter(runs, RUNS), csv.DictWriter(views, VIEWS)
+        runs.writeheader()
+        views.writeheader()
+        for seed, scene in ((seed, scene) for seed in seeds for scene in scenes):
+            chance = random.Random(1000 * seed + scene)
+            level = chance.uniform(0.8, 0.9)
+            for strategy in evidence_headline.STRATEGIES:
+                loss = 0.2 if strategy == worst else 0.0 if strategy == "oracle" else 0.001 if strategy == "surface" else 0.05
+                area = level - loss + chance.uniform(0, 0.001)
+                key = {"scene": f"clutter:{scene}", "scene_hash": hashes.format(scene), "strategy": strategy, "noise": "kinect-v1", "seed": seed}
+                runs.writerow({**key, "initial_coverage": 0.3, "coverage": area + 0.1, "coverage_area": area, "views": 1,
+                               "unknown_near_objects": 1000 * (2 - level), "program_version": version,
+                               "settings": json.dumps(settings(strategy))})
+                views.writerow({**key, "number": 0, "coverage": 0.3})
+                views.writerow({**key, "number": 1, "gain": 100 * level, "gain_observed": 80 * level, "coverage": area + 0.1})
 
 
 class Statistics(unittest.TestCase):
@@ -63,8 +87,7 @@ class Statistics(unittest.TestCase):
                 common = chance.gauss(100, 20)  # the true ratio: 130 / 100
                 runs += [{"scene": scene, "strategy": "a", "figure": str(1.3 * common + chance.gauss(0, 10))},
                          {"scene": scene, "strategy": "b", "figure": str(common + chance.gauss(0, 10))}]
-            figures = evidence_planner.Figures.__new__(evidence_planner.Figures)
-            figures.runs = runs
+            figures = evidence_planner.Figures(runs, [])
             ratio = figures.mean("a", "figure") / figures.mean("b", "figure")
             held += abs(ratio - 1.3) < figures.ratio_half_width("a", "b", "figure")
         self.assertAlmostEqual(held / times, 0.95, delta=0.03)
@@ -75,33 +98,13 @@ class Headline(unittest.TestCase):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def write_campaign(self, kind, worst="attention", without=0):
-        """A seed of every scene, without the last ones; strategy `worst` has the least of everything."""
-        campaign = self.folder / kind / "campaign"
-        campaign.mkdir(parents=True)
-        with sqlite3.connect(campaign / "campaign.sqlite") as file:
-            file.execute("CREATE TABLE runs (settings TEXT)")
-            file.executemany("INSERT INTO runs VALUES (?)", [('{"robot": "free", "gain": 1}',), ('{"robot": "free", "gain": 2}',)])
-        chance = random.Random(7)
-        with (campaign / "runs.csv").open("w") as runs, (campaign / "views.csv").open("w") as views:
-            runs, views = csv.DictWriter(runs, RUNS), csv.DictWriter(views, VIEWS)
-            runs.writeheader()
-            views.writeheader()
-            for scene in range(201, 301 - without):
-                level = chance.uniform(0.8, 0.9)
-                for strategy in evidence_headline.STRATEGIES:
-                    loss = 0.2 if strategy == worst else 0.0 if strategy == "oracle" else 0.001 if strategy == "surface" else 0.05
-                    area = level - loss + chance.uniform(0, 0.001)
-                    key = {"scene": f"clutter:{scene}", "strategy": strategy, "noise": "kinect-v1", "seed": 1}
-                    runs.writerow({**key, "initial_coverage": 0.3, "coverage": area + 0.1, "coverage_area": area,
-                                   "unknown_near_objects": 1000 * (2 - level), "views": 1})
-                    views.writerow({**key, "number": 0, "coverage": 0.3})
-                    views.writerow({**key, "number": 1, "gain": 100 * level, "gain_observed": 80 * level, "coverage": area + 0.1})
+        write_tables(self.folder / kind / "campaign", worst, scenes=range(201, 301 - without))
 
-    def document(self):
+    def document(self, seeds="1"):
         """Exit status, and the text."""
         document = self.folder / "document.md"
         done = subprocess.run([SCRIPTS / "evidence_headline.py", "no-program", self.folder, document, "table"], check=False,
-                              env={**os.environ, "SACCADE_HEADLINE_SEEDS": "1"}, stdout=subprocess.DEVNULL)
+                              env={**os.environ, "SACCADE_HEADLINE_SEEDS": seeds}, stdout=subprocess.DEVNULL)
         return done.returncode, document.read_text()
 
     def test_complete_campaigns_met_what_they_are_held_to(self):
@@ -117,6 +120,16 @@ class Headline(unittest.TestCase):
         self.assertRegex(text, r"area as a share of the oracle's: 0\.99\d ± 0\.000 \(at least 0\.980\)")
         self.assertRegex(text, r"\| `surface` \|.*\| 1\.00 \| 0\.80 \|")
 
+    def test_the_command_is_told_as_it_was_given(self):
+        for seeds, text in ((range(1, 11), "1-10"), ([3, 5], "3,5"), ([7, 1, 2, 3], "1-3,7"), ([1], "1")):
+            self.assertEqual(evidence_headline.seeds_text(seeds), text)
+        for seeds, text in (("1", "1"), ("2", "1-2"), ("10", "1-10")):
+            _, told = self.document(seeds)
+            command = (f"saccade compare --scenes clutter:201-300 --strategies surface,oracle,sphere,standard,attention --seeds {text} "
+                       "--max-views 5")
+            self.assertIn(f"```sh\n{command} --robot comau --out DIR\n```", told)
+            self.assertIn(f"```sh\n{command} --out DIR\n```", told)
+
     def test_unfinished_campaigns_met_it_so_far(self):
         self.write_campaign("arm", without=1)
         status, text = self.document()
@@ -125,6 +138,7 @@ class Headline(unittest.TestCase):
         self.assertNotIn("- met: ", text)
         self.assertIn("495 of 500 runs: 99 scenes", text)
         self.assertIn("Not run yet.", text)
+        self.assertNotIn("are kept run by run", text)  # no seed is whole
 
     def test_what_is_missed_is_said(self):
         self.write_campaign("arm", worst="surface")
@@ -133,45 +147,8 @@ class Headline(unittest.TestCase):
         self.assertEqual(status, 1, text)
         self.assertEqual((text.count("- **missed**: "), text.count("- **missed so far**: ")), (5, 5))
 
-    def test_whole_seeds_are_recorded_and_not_run_again(self):
-        for kind in evidence_headline.CAMPAIGNS:
-            self.write_campaign(kind)
-        status, text = self.document()
-        records = sorted((self.folder / "document").iterdir())
-        self.assertEqual([record.name for record in records], ["arm-seed-01.csv", "flying-seed-01.csv"])
-        self.assertEqual(records[0].read_text().splitlines()[0], '# {"robot": "free"}')
-        self.assertEqual(len(records[0].read_text().splitlines()), 2 + 500)
-        for kind in evidence_headline.CAMPAIGNS:
-            shutil.rmtree(self.folder / kind)  # another machine
-        calls = self.folder / "calls"
-        program = self.folder / "saccade"
-        program.write_text(f"#!/bin/sh\necho x >>{calls}\n")
-        program.chmod(0o755)
-        done = subprocess.run([SCRIPTS / "evidence_headline.py", program, self.folder, self.folder / "document.md"], check=False,
-                              env={**os.environ, "SACCADE_HEADLINE_SEEDS": "1", "SACCADE_SLURM": "off"}, stdout=subprocess.DEVNULL)
-        self.assertEqual(done.returncode, status)
-        self.assertFalse(calls.exists())
-        self.assertEqual((self.folder / "document.md").read_text(), text)
-        # A run that is done again must have the figures of its record.
-        checked = evidence_records.Records(self.folder / "document", "arm", evidence_headline.STRATEGIES, 100)
-        self.write_campaign("arm")
-        self.assertEqual(checked.differences(1, self.folder / "arm/campaign"), [])
-        table = self.folder / "arm/campaign/runs.csv"
-        table.write_text(table.read_text().replace(",1\n", ",2\n", 1))  # the views of the first run
-        self.assertEqual(checked.differences(1, self.folder / "arm/campaign"), ["clutter:201, surface: views 1, now 2"])
-
-    def test_records_of_other_settings_are_refused(self):
-        for kind in evidence_headline.CAMPAIGNS:
-            self.write_campaign(kind)
-        self.document()
-        record = self.folder / "document/arm-seed-01.csv"
-        (self.folder / "document/arm-seed-02.csv").write_text(record.read_text().replace('"robot"', '"arm"'))
-        with self.assertRaises(SystemExit):
-            evidence_records.Records(self.folder / "document", "arm", evidence_headline.STRATEGIES, 100)
-
     def test_ratio_of_one_scene_has_no_interval(self):
-        figures = evidence_planner.Figures.__new__(evidence_planner.Figures)
-        figures.runs = [{"scene": "a", "strategy": strategy, "figure": "1"} for strategy in "ab"]
+        figures = evidence_planner.Figures([{"scene": "a", "strategy": strategy, "figure": "1"} for strategy in "ab"], [])
         self.assertEqual(figures.ratio_half_width("a", "b", "figure"), math.inf)
 
 
@@ -272,6 +249,15 @@ class CampaignOnACluster(unittest.TestCase):
         self.assertTrue(last.endswith(f"--json {self.campaign}.json"), last)
         self.assertIn("--merge", said)
         self.assertFalse(self.note.exists())
+
+    def test_interruptions_are_passed_on(self):
+        for status in (129, 130, 140, 143):
+            self.stand_in("saccade", f"#!/bin/sh\nexit {status}\n")
+            self.assertEqual(self.call()[0], status)
+            self.assertEqual(self.planner("rooms_flying").returncode, status)
+            headline = [SCRIPTS / "evidence_headline.py", self.folder / "saccade", self.folder, self.folder / "document.md"]
+            done = subprocess.run(headline, check=False, capture_output=True, env={**self.environment, "SACCADE_SLURM": "off"}, timeout=60)
+            self.assertEqual(done.returncode, status)
 
     def test_it_runs_here_where_no_cluster_ever_was(self):
         self.cluster(answers=False)

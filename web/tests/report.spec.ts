@@ -67,8 +67,13 @@ test("a comparison in slices says how far each is and what failed", async ({ pag
   await expect(slices.locator("tbody tr").nth(1)).toContainText("4 of 6");
   record.result["runs"] = { planned: 12, done: 5, in_shards: 3 };
   record.result["unreadable"] = ["shards/1-of-2/campaign.sqlite: is damaged"];
+  record.result["set_aside"] = ["0-of-2"];
+  record.result["slices_at"] = "2024-06-30T12:00:00Z";
   await open(page, writeReport(folder, record, [], details));
-  await expect(page.locator("main")).toContainText("5 of 12 runs are merged, 3 more are done in slices, 4 are still to be done.");
+  await expect(page.locator("main")).toContainText("5 of 12 runs are merged, 3 more are done in slices, 4 are still to be done. 1 slice failed.");
+  await expect(slices.locator("p").first()).toHaveText("2 slices: 1 done, 1 failed, at 2024-06-30 12:00:00 UTC.");
+  await expect(page.getByRole("heading", { level: 2 }).first()).toHaveText("Slices");
+  await expect(slices.locator("li").nth(2)).toHaveText("Set aside, since it was damaged: 0-of-2");
   await expect(slices.locator("li").nth(1)).toHaveText("Cannot be read: shards/1-of-2/campaign.sqlite: is damaged");
   delete record.result["unreadable"];
   delete record.result["slices"];
@@ -83,6 +88,7 @@ test("a benchmark whose slices are at work has no table yet", async ({ page }) =
   expect(await open(page, writeReport(folder, record, [], details))).toEqual([]);
   await expect(page.getByRole("heading", { level: 1 })).toHaveText("Benchmark");
   await expect(page.getByRole("heading", { level: 2 }).first()).toHaveText("All scenes");
+  await expect(page.locator("main, header").getByText("Figures beside published ones come with the merge.")).toHaveCount(1);
 });
 
 test("a benchmark has ours and published figures in one table", async ({ page }) => {

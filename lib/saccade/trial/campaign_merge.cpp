@@ -235,10 +235,12 @@ Status check_known(const Campaign& campaign, const Campaign& shard, const Campai
                      " did, with other figures; use one version for a campaign, and do the runs of the other again",
                  {}};
   }
-  return Error{Errc::invalid_argument,
-               "holds the run " + name_of(key) +
-                   " with other figures than the campaign, which cannot be; one of the two programs or files is broken",
-               {}};
+  return Error{
+      Errc::invalid_argument,
+      "holds the run " + name_of(key) +
+          " with other figures than the campaign or a shard before it, which cannot be; one of the programs or "
+          "files is broken",
+      {}};
 }
 
 }  // namespace

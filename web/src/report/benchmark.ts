@@ -122,8 +122,7 @@ function differencesSection(benchmark: Json): Section | null {
 export function benchmarkReport(document: ReportDocument, pictures: Pictures): Report {
   const benchmark = object(document.record.result["benchmark"]);
   const runs = compareReport(document, pictures);
-  // While its slices are at work nothing is measured yet.
-  if (document.record.result["benchmark"] === undefined) return { ...runs, title: "Benchmark" };
+  if (document.record.result["benchmark"] === undefined) return { ...runs, title: "Benchmark", summary: `${runs.summary} Figures beside published ones come with the merge.` };
   const lines = list(benchmark["beside_published"]).map(String);
   const differences = differencesSection(benchmark);
   return { ...runs, title: `Benchmark ${text(benchmark["name"])}`, summary: lines.length > 0 ? lines.map((line) => `${line}.`).join("\n") : runs.summary, sections: [tableSection(benchmark), ...(differences ? [differences] : []), ...runs.sections] };

@@ -206,11 +206,16 @@ function summaryText(comparison: Comparison): string {
   const [done, planned] = [number(runs["done"]) ?? 0, number(runs["planned"]) ?? 0];
   const inShards = number(runs["in_shards"]) ?? 0;
   const rest = planned - done - inShards;
+  const failed = objects(result["slices"]).filter((slice) => text(slice["state"]) === "failed").length;
   const sentences =
+    planned === 0
+      ? ["No run has begun."]
+      :
     inShards > 0
       ? [`${done} of ${planned} runs are merged, ${inShards} more are done in slices, ${rest > 0 ? `${rest} are still to be done` : "none is left"}.`]
       : [done < planned ? `${done} of ${planned} runs; the others are still to be done.` : `${plural(done, "run")}.`];
   const area = comparison.measures.find((measure) => measure.name === "coverage_area");
+  if (failed > 0) sentences.push(`${plural(failed, "slice")} failed.`);
   for (const group of comparison.of(comparison.scenes.length > 1 ? "" : (comparison.scenes[0] ?? ""))) {
     const of = estimate(group.json["coverage_area"]);
     if (group.paired && area && of.n > 0) sentences.push(`Area under the coverage, ${group.label.replace(/, paired$/, "")}: ${estimateText(area, of, of.n, true)} points.`);
@@ -225,6 +230,8 @@ export function compareReport(document: ReportDocument, pictures: Pictures): Rep
   const strategies = [...new Set(comparison.summaries.map((summary) => text(summary["strategy"])))];
   const noises = [...new Set(comparison.summaries.map((summary) => text(summary["noise"])))];
   const slices = slicesSection(document);
+  const runs = object(result["runs"]);
+  const incomplete = (number(runs["done"]) ?? 0) < (number(runs["planned"]) ?? 1);
   const parts = [...(comparison.scenes.length > 1 ? [""] : []), ...comparison.scenes];
   const about = objects(object(document.details)["facts"]).map((fact) => [text(fact["name"]), text(fact["value"])] as const);
   return {
@@ -237,12 +244,13 @@ export function compareReport(document: ReportDocument, pictures: Pictures): Rep
     ],
     summary: summaryText(comparison),
     sections: [
+      ...(slices && incomplete ? [slices] : []),
       ...parts.map((scene, i) => sceneSection(comparison, scene, i + 1)),
-      ...(slices ? [slices] : []),
+      ...(slices && !incomplete ? [slices] : []),
       section(
         "comparison",
         "Comparison",
-        facts([["scenes", String(comparison.scenes.length)], ["seeds", numbers(result["seeds"]).join(", ")], ...about, ["Saccade", record.version ?? ""]], "pairs"),
+        facts([["scenes", comparison.scenes.length > 0 ? String(comparison.scenes.length) : ""], ["seeds", numbers(result["seeds"]).join(", ")], ...about, ["Saccade", record.version ?? ""]], "pairs"),
         links(
           pictures.files,
           [

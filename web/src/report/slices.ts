@@ -6,7 +6,7 @@ import { section, type Section } from "./parts";
 import { type Column, dataTable } from "./table";
 import { count, plural } from "./words";
 
-const runsOf = (slice: Json): string => `${count(number(slice["done"]))} of ${count(number(slice["planned"]))}`;
+const runsOf = (slice: Json): string => (slice["planned"] === undefined ? "" : `${count(number(slice["done"]))} of ${count(number(slice["planned"]))}`);
 const shareOf = (slice: Json): number => (number(slice["done"]) ?? 0) / Math.max(1, number(slice["planned"]) ?? 0);
 const timeOf = (value: unknown): string => text(value).replace("T", " ").replace("Z", "");
 
@@ -31,15 +31,20 @@ function statesText(slices: readonly Json[]): string {
 /** null for a campaign without slices. */
 export function slicesSection(document: ReportDocument): Section | null {
   const slices = objects(document.record.result["slices"]);
-  const unreadable = list(document.record.result["unreadable"]).map((error) => h("li", {}, `Cannot be read: ${text(error)}`));
-  if (slices.length === 0 && unreadable.length === 0) return null;
+  const { result } = document.record;
+  const others = [
+    ...list(result["unreadable"]).map((error) => h("li", {}, `Cannot be read: ${text(error)}`)),
+    ...list(result["set_aside"]).map((name) => h("li", {}, `Set aside, since it was damaged: ${text(name)}`)),
+  ];
+  if (slices.length + others.length === 0) return null;
+  const at = timeOf(result["slices_at"]);
   const failed = slices.filter((slice) => text(slice["error"]) !== "");
   const errors = failed.map((slice) => h("li", {}, `Slice ${String(number(slice["slice"]))} of ${String(number(slice["of"]))}: ${text(slice["error"])}`));
   return section(
     "slices",
     "Slices",
-    h("p", { class: "soft" }, `${plural(slices.length, "slice")}: ${statesText(slices)}.`),
-    errors.length + unreadable.length > 0 ? h("ul", {}, ...errors, ...unreadable) : null,
+    h("p", { class: "soft" }, `${plural(slices.length, "slice")}: ${statesText(slices)}${at === "" ? "" : `, at ${at} UTC`}.`),
+    errors.length + others.length > 0 ? h("ul", {}, ...errors, ...others) : null,
     dataTable("Slices of the campaign", kColumns, slices),
   );
 }

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <charconv>
 #include <memory>
+#include <random>
 #include <vector>
 
 namespace saccade {
@@ -35,18 +36,18 @@ bool take(std::string_view& text, char last) {
 
 bool is_gone(int process) { return ::kill(process, 0) != 0 && errno == ESRCH; }
 
-bool is_locked(const std::filesystem::path& file) {
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+}  // namespace
+
+bool is_written_to(const std::filesystem::path& temporary) {
+  const int fd = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) return true;
   const bool locked = ::flock(fd, LOCK_EX | LOCK_NB) != 0;
   ::close(fd);
   return locked;
 }
 
-}  // namespace
-
 std::string make_temporary_name(std::string_view destination) {
-  static std::atomic<unsigned> counter{0};
+  static std::atomic<unsigned> counter{std::random_device{}()};  // containers have the same process numbers
   std::string name{'.'};
   name += destination;
   name += '.' + std::to_string(::getpid()) + '-' + std::to_string(counter.fetch_add(1));
@@ -81,7 +82,7 @@ void remove_leftovers(const std::filesystem::path& destination) {
     leftovers.push_back(folder / file);
   }
   for (const std::filesystem::path& leftover : leftovers) {
-    if (!is_locked(leftover)) ::unlink(leftover.c_str());
+    if (!is_written_to(leftover)) ::unlink(leftover.c_str());
   }
 }
 

@@ -56,6 +56,11 @@ Error SqliteFile::error(int code) const {
       const bool reading = code == SQLITE_IOERR_READ || code == SQLITE_IOERR_SHORT_READ;
       return {Errc::io_failure, (reading ? "cannot be read" : "cannot be written") + system_reason(database), where};
     }
+    case SQLITE_ERROR: {
+      const std::string message = database == nullptr ? "" : sqlite3_errmsg(database);
+      if (!message.starts_with("no such ")) break;
+      return {Errc::corrupt_data, "was changed or damaged: there is " + message.substr(3), where};
+    }
     case SQLITE_NOMEM: return {Errc::unavailable, "out of memory", where};
     default: break;
   }
