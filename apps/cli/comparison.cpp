@@ -10,6 +10,7 @@
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/scene/ray_scene.hpp"
 #include "saccade/scene/scene_yaml.hpp"
+#include "saccade/views/baseline_gains.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -64,6 +65,8 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
     settings["objective"] = to_string(config.exploration.objective);
   if (config.strategy.name == surface_planner().name) settings["least_share"] = config.least_share;
   if (config.strategy.name == attention_planner().name) settings["rival_share"] = config.planner.rival_share;
+  if (config.strategy.name == kVolumetricInformationNames.of(VolumetricInformation::area_factor))
+    settings["touched_of"] = "rays through box";
   if (config.arm) {
     settings["robot_hash"] = arm_hash;
     settings["planner"] = config.arm_robot.planner.planner;

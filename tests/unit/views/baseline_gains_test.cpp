@@ -115,16 +115,19 @@ TEST(BaselineGains, TheAreaFactorIsBestForTheSharesWishedFor) {
   EXPECT_NEAR(rated(0.3), 0.0, 1e-9);
   EXPECT_NEAR(rated(-0.3), 0.0, 1e-9);
   EXPECT_NEAR(rated(-0.003), share_rating(0.4, 0.2) + share_rating(0.6, 0.8), 1e-9);
-  // A view that touches voxels with fewer than a tenth of its rays has no shares to speak of.
-  const auto rated_post = [&](double focal_px) {
+  // A view that touches voxels with fewer than a tenth of its rays through the box of the objects has no shares to
+  // speak of. The box of a post alone is narrow; a sill below the rays makes it wide.
+  const auto rated_post = [&](double focal_px, bool with_sill) {
     return told(area_factor, map_of([&](const Vector3d& p) {
+                  if (with_sill && p.z() < 0.1 && p.x() > 0.0) return std::abs(p.y()) < 0.25 ? kOccupied : kEmpty;
                   if (p.x() < 0.0 || p.y() < 0.0 || p.y() > 0.02) return kEmpty;
                   return p.y() < 0.01 ? kOccupied : kUnknown;
                 }),
                 PinholeCamera{60, 1, focal_px, focal_px, 29.5, 0.0, 0.05, 2.0});
   };
-  EXPECT_NEAR(rated_post(300.0), share_rating(0.5, 0.2) + share_rating(0.5, 0.8), 0.1);
-  EXPECT_EQ(rated_post(60.0), 0.0);
+  EXPECT_NEAR(rated_post(300.0, true), share_rating(0.5, 0.2) + share_rating(0.5, 0.8), 0.1);
+  EXPECT_EQ(rated_post(60.0, true), 0.0);
+  EXPECT_GT(rated_post(60.0, false), 0.5);  // few of all rays, but most of those through its box
 }
 
 TEST(BaselineGains, TellNothingNearerThanTheRangeNorFromWithinWhatIsNotEmpty) {

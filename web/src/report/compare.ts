@@ -209,7 +209,7 @@ function summaryText(comparison: Comparison): string {
   const failed = objects(result["slices"]).filter((slice) => text(slice["state"]) === "failed").length;
   const sentences =
     planned === 0
-      ? ["No run has begun."]
+      ? ["No figures yet."]
       :
     inShards > 0
       ? [`${done} of ${planned} runs are merged, ${inShards} more are done in slices, ${rest > 0 ? `${rest} are still to be done` : "none is left"}.`]

@@ -106,7 +106,7 @@ std::vector<double> informations(const RayMap& map, const PinholeCamera& camera,
           follow<kMetric>(pixel_ray(rays, camera, u, v), map, camera, reach_vox, told);
         }
       }
-      values[i] = told.value(static_cast<double>(camera.width) * camera.height);
+      values[i] = told.value();
     }
   });
   return values;
