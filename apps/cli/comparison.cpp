@@ -66,7 +66,7 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
   if (config.strategy.name == surface_planner().name) settings["least_share"] = config.least_share;
   if (config.strategy.name == attention_planner().name) settings["rival_share"] = config.planner.rival_share;
   if (config.strategy.name == kVolumetricInformationNames.of(VolumetricInformation::area_factor))
-    settings["touched_of"] = "rays through box";
+    settings["touched_of"] = "rays, else box";
   if (config.arm) {
     settings["robot_hash"] = arm_hash;
     settings["planner"] = config.arm_robot.planner.planner;

@@ -115,19 +115,29 @@ TEST(BaselineGains, TheAreaFactorIsBestForTheSharesWishedFor) {
   EXPECT_NEAR(rated(0.3), 0.0, 1e-9);
   EXPECT_NEAR(rated(-0.3), 0.0, 1e-9);
   EXPECT_NEAR(rated(-0.003), share_rating(0.4, 0.2) + share_rating(0.6, 0.8), 1e-9);
-  // A view that touches voxels with fewer than a tenth of its rays through the box of the objects has no shares to
-  // speak of. The box of a post alone is narrow; a sill below the rays makes it wide.
-  const auto rated_post = [&](double focal_px, bool with_sill) {
-    return told(area_factor, map_of([&](const Vector3d& p) {
-                  if (with_sill && p.z() < 0.1 && p.x() > 0.0) return std::abs(p.y()) < 0.25 ? kOccupied : kEmpty;
-                  if (p.x() < 0.0 || p.y() < 0.0 || p.y() > 0.02) return kEmpty;
-                  return p.y() < 0.01 ? kOccupied : kUnknown;
-                }),
-                PinholeCamera{60, 1, focal_px, focal_px, 29.5, 0.0, 0.05, 2.0});
+}
+
+TEST(BaselineGains, TheAreaFactorNeedsATenthOfTheRaysOrOfThoseThroughTheBox) {
+  // The box of a post alone is narrow; a sill below the rays makes it wide.
+  const auto post = [](bool with_sill) {
+    return map_of([with_sill](const Vector3d& p) {
+      if (with_sill && p.z() < 0.1 && p.x() > 0.0) return std::abs(p.y()) < 0.25 ? kOccupied : kEmpty;
+      if (p.x() < 0.0 || p.y() < 0.0 || p.y() > 0.02) return kEmpty;
+      return p.y() < 0.01 ? kOccupied : kUnknown;
+    });
   };
-  EXPECT_NEAR(rated_post(300.0, true), share_rating(0.5, 0.2) + share_rating(0.5, 0.8), 0.1);
-  EXPECT_EQ(rated_post(60.0, true), 0.0);
-  EXPECT_GT(rated_post(60.0, false), 0.5);  // few of all rays, but most of those through its box
+  const auto rated = [](double focal_px, const TsdfSnapshot& map, const std::vector<Pose>& poses) {
+    const PinholeCamera sensor{60, 1, focal_px, focal_px, 29.5, 0.0, 0.05, 2.0};
+    return gains(*volumetric_gain(area_factor, {.sensor = sensor}), map, poses);
+  };
+  EXPECT_NEAR(rated(300.0, post(true), {along_x()}).front(), share_rating(0.5, 0.2) + share_rating(0.5, 0.8), 0.1);
+  EXPECT_EQ(rated(60.0, post(true), {along_x()}).front(), 0.0);  // a handful has any shares by chance
+  EXPECT_GT(rated(60.0, post(false), {along_x()}).front(), 0.5);
+  // Beside a view that touches enough with all its rays, those through the box do not count.
+  const Pose near = look_at({-0.06, 0.008, 0.203}, {0.0, 0.008, 0.203});
+  const std::vector<double> both = rated(60.0, post(false), {along_x(), near});
+  EXPECT_EQ(both.front(), 0.0);
+  EXPECT_GT(both.back(), 0.5);
 }
 
 TEST(BaselineGains, TellNothingNearerThanTheRangeNorFromWithinWhatIsNotEmpty) {

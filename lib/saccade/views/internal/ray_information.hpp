@@ -30,8 +30,8 @@ constexpr double kOccupiedOccupancy{0.97};  ///< clamping value of OctoMap
 }
 constexpr double kWishedOccupied{0.2};
 constexpr double kWishedOccplane{0.8};
-/// Share of a view's rays through the counted box that must touch counted voxels, since a handful can have any shares
-/// by chance.
+/// Share of a view's rays that must touch counted voxels, since a handful can have any shares by chance. Where no view
+/// has as many, the share is of the rays through the counted box: a small object in a wide image.
 constexpr double kLeastTouched{0.1};
 
 /// Information along rays. It receives the voxels along each ray in order, without empty ones; voxels that do not count
@@ -41,7 +41,7 @@ class RayInformation {
  public:
   /// Begins the next ray through the counted box.
   void begin_ray() {
-    rays_ += 1.0;
+    in_box_ += 1.0;
     visible_ = 1.0;
     run_ = 0.0;
     entropy_ = 0.0;
@@ -84,13 +84,14 @@ class RayInformation {
       voxels_ += voxels;
     }
   }
-  /// Returns the information of all rays.
-  [[nodiscard]] double value() const {
+  [[nodiscard]] double rays_in_box() const { return in_box_; }
+  /// Returns the information of all rays; `rays` is the number of which enough must touch counted voxels.
+  [[nodiscard]] double value([[maybe_unused]] double rays) const {
     using enum VolumetricInformation;
     if constexpr (kMetric == average_entropy) return voxels_ > 0.0 ? sum_ / voxels_ : 0.0;
     if constexpr (kMetric == area_factor) {
       const double all = occupied_ + occplane_ + unmark_;
-      if (all == 0.0 || all < kLeastTouched * rays_) return 0.0;
+      if (all == 0.0 || all < kLeastTouched * rays) return 0.0;
       return share_rating(occupied_ / all, kWishedOccupied) + share_rating(occplane_ / all, kWishedOccplane);
     }
     return sum_;
@@ -100,7 +101,7 @@ class RayInformation {
   static constexpr double kInvisible{1e-9};
   static inline const double kUnknownEntropy = occupancy_entropy(kUnknownOccupancy);
   static inline const double kOccupiedEntropy = occupancy_entropy(kOccupiedOccupancy);
-  double rays_{0.0};
+  double in_box_{0.0};   ///< rays through the counted box
   double visible_{1.0};  ///< likelihood that the ray reaches this point
   double run_{0.0};      ///< visible entropy of the unknown voxels passed without a gap
   double entropy_{0.0};  ///< sum over the voxels of this ray

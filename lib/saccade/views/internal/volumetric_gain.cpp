@@ -96,6 +96,7 @@ std::vector<double> informations(const RayMap& map, const PinholeCamera& camera,
   const StateVolume& volume = map.scene->volume;
   const double reach_vox = kProximity_m / volume.voxel_size_m();
   std::vector<double> values(T_world_camera.size(), 0.0);
+  std::vector<double> of_box(kMetric == VolumetricInformation::area_factor ? values.size() : 0, 0.0);
   executor.parallel_for(values.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (map.scene->is_blocked(T_world_camera[i].translation())) continue;
@@ -106,10 +107,12 @@ std::vector<double> informations(const RayMap& map, const PinholeCamera& camera,
           follow<kMetric>(pixel_ray(rays, camera, u, v), map, camera, reach_vox, told);
         }
       }
-      values[i] = told.value();
+      values[i] = told.value(static_cast<double>(camera.width) * camera.height);
+      if (!of_box.empty()) of_box[i] = told.value(told.rays_in_box());
     }
   });
-  return values;
+  const bool none = std::none_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
+  return none && !of_box.empty() ? of_box : values;
 }
 
 }  // namespace
