@@ -70,12 +70,13 @@ test("a comparison in slices says how far each is and what failed", async ({ pag
   record.result["set_aside"] = ["0-of-2"];
   record.result["slices_at"] = "2024-06-30T12:00:00Z";
   await open(page, writeReport(folder, record, [], details));
-  await expect(page.locator("main")).toContainText("5 of 12 runs are merged, 3 more are done in slices, 4 are still to be done. 1 slice failed.");
+  await expect(page.locator("body")).toContainText("5 of 12 runs are merged, 3 more are done in slices, 4 are still to be done. 1 slice failed.");
   await expect(slices.locator("p").first()).toHaveText("2 slices: 1 done, 1 failed, at 2024-06-30 12:00:00 UTC.");
   await expect(page.getByRole("heading", { level: 2 }).first()).toHaveText("Slices");
   await expect(slices.locator("li").nth(2)).toHaveText("Set aside, since it was damaged: 0-of-2");
   await expect(slices.locator("li").nth(1)).toHaveText("Cannot be read: shards/1-of-2/campaign.sqlite: is damaged");
   delete record.result["unreadable"];
+  delete record.result["set_aside"];
   delete record.result["slices"];
   await open(page, writeReport(folder, record, [], details));
   await expect(page.locator("#slices")).toHaveCount(0);
