@@ -249,6 +249,7 @@ class BenchmarkCommand final : public Command {
     CompareOptions options = compare_;
     options.run.run = plan.run;
     options.noises = {noise_key(plan.run)};
+    options.same_runs_once = true;
     // A protocol ends a run after its number of views; scenes of their own are explored as elsewhere.
     if (!benchmark_.has_own_scenes()) options.run.min_gain = plan.run.planner.min_gain;
     return options;
@@ -263,7 +264,11 @@ class BenchmarkCommand final : public Command {
       context.lap("measuring");
     }
     const auto planned = result.at("runs").at("planned").get<std::size_t>();
-    const BenchmarkTable table = benchmark_table(benchmark_, measured, compared, planned);
+    std::set<std::string> of_one_seed;
+    for (const NamedPlanner& strategy : compare_.strategies) {
+      if (comparison.is_same_for_all_seeds(strategy, noise_key(plan.run))) of_one_seed.insert(strategy.name);
+    }
+    const BenchmarkTable table = benchmark_table(benchmark_, measured, compared, of_one_seed, planned);
     SACCADE_CHECK(write_benchmark(context.out(), benchmark_, plan, table, measured));
     result["benchmark"] = benchmark_json(benchmark_, plan, table);
     return benchmark_text(benchmark_, plan, table);

@@ -37,26 +37,47 @@ std::vector<std::string> strategies_in(const ComparedRuns& compared) {
 /// Scene and seed, which runs of different strategies have in common.
 using SceneAndSeed = std::pair<std::string, std::uint64_t>;
 
-/// Those of which all strategies have a run.
-std::set<SceneAndSeed> shared_by(const std::vector<std::string>& strategies, const ComparedRuns& compared) {
-  std::map<SceneAndSeed, std::set<std::string>> run_by;
-  for (const CampaignEntry& run : compared.runs) run_by[{run.key.scene, run.key.seed}].insert(run.key.strategy);
-  std::set<SceneAndSeed> shared;
-  for (const auto& [place, by] : run_by) {
-    if (by.size() == strategies.size()) shared.insert(place);
+/// Places of which all strategies have a run, and the runs there.
+class SharedRuns {
+ public:
+  /// @param of_one_seed  strategies whose run of a scene stands for every seed
+  SharedRuns(const std::vector<std::string>& strategies, const ComparedRuns& compared,
+             const std::set<std::string>& of_one_seed)
+      : of_one_seed_{of_one_seed} {
+    std::map<SceneAndSeed, std::set<std::string>> run_by;
+    std::map<std::string, std::set<std::string>> any_seed_by;
+    for (const CampaignEntry& run : compared.runs) {
+      run_by[{run.key.scene, run.key.seed}].insert(run.key.strategy);
+      if (stands_for_all_seeds(run.key)) any_seed_by[run.key.scene].insert(run.key.strategy);
+    }
+    for (auto& [place, by] : run_by) {
+      by.insert(any_seed_by[place.first].begin(), any_seed_by[place.first].end());
+      if (by.size() != strategies.size()) continue;
+      places_.insert(place);
+      scenes_.insert(place.first);
+    }
   }
-  return shared;
-}
 
-/// The runs, measured or of a campaign, that are of these.
-template <class Run>
-std::vector<Run> runs_in(const std::set<SceneAndSeed>& places, const std::vector<Run>& runs) {
-  std::vector<Run> kept;
-  std::copy_if(runs.begin(), runs.end(), std::back_inserter(kept), [&places](const Run& run) {
-    return places.count({run.key.scene, run.key.seed}) > 0;
-  });
-  return kept;
-}
+  [[nodiscard]] std::size_t places() const { return places_.size(); }
+
+  /// Returns those of the runs, measured or of a campaign, that are shared.
+  template <class Run>
+  [[nodiscard]] std::vector<Run> among(const std::vector<Run>& runs) const {
+    std::vector<Run> kept;
+    std::copy_if(runs.begin(), runs.end(), std::back_inserter(kept), [&](const Run& run) {
+      return stands_for_all_seeds(run.key) ? scenes_.count(run.key.scene) > 0
+                                           : places_.count({run.key.scene, run.key.seed}) > 0;
+    });
+    return kept;
+  }
+
+ private:
+  [[nodiscard]] bool stands_for_all_seeds(const CampaignKey& run) const { return of_one_seed_.count(run.strategy) > 0; }
+
+  const std::set<std::string>& of_one_seed_;
+  std::set<SceneAndSeed> places_;
+  std::set<std::string> scenes_;
+};
 
 BenchmarkRow row_after(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
                        const std::string& strategy, std::size_t views) {
@@ -148,7 +169,9 @@ std::string incomplete_text(const BenchmarkTable& table) {
                      " runs so far; nothing is said beside published figures\n          ";
   if (table.each_strategy == 0) return text + "there is no object that all strategies with runs have in common yet\n";
   return text + "the table has " + std::to_string(table.each_strategy) + (table.each_strategy == 1 ? " run" : " runs") +
-         " of each strategy: the objects, first views and seeds that all strategies with runs have in common\n";
+         " of each strategy: the objects, first views and seeds that all strategies with runs have in common (a run "
+         "that "
+         "no seed changes counts for each)\n";
 }
 
 /// Width of the first column.
@@ -220,20 +243,21 @@ std::vector<std::string> objects_of(const Benchmark& benchmark, const std::vecto
 }
 
 BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
-                               const ComparedRuns& compared, std::size_t planned) {
+                               const ComparedRuns& compared, const std::set<std::string>& of_one_seed,
+                               std::size_t planned) {
   const std::vector<std::string> strategies = strategies_in(compared);
-  const std::set<SceneAndSeed> shared = shared_by(strategies, compared);
-  BenchmarkTable table{{}, {}, planned, compared.runs.size(), shared.size()};
-  if (benchmark.rule && !shared.empty()) {
-    const std::vector<MeasuredRun> runs = runs_in(shared, measured);
+  const SharedRuns shared{strategies, compared, of_one_seed};
+  BenchmarkTable table{{}, {}, planned, compared.runs.size(), shared.places()};
+  if (benchmark.rule && shared.places() > 0) {
+    const std::vector<MeasuredRun> runs = shared.among(measured);
     for (const std::string& strategy : strategies) {
       for (const std::size_t views : told_views(benchmark)) {
         table.rows.push_back(row_after(benchmark, runs, strategy, views));
       }
     }
     table.differences = object_differences(benchmark, runs, strategies);
-  } else if (!shared.empty()) {
-    const std::vector<CampaignSummary> summaries = summarize(runs_in(shared, compared.runs), compared.budget);
+  } else if (shared.places() > 0) {
+    const std::vector<CampaignSummary> summaries = summarize(shared.among(compared.runs), compared.budget);
     for (const std::string& strategy : strategies) table.rows.push_back(row_of_own_scenes(summaries, strategy));
     table.differences = object_differences(benchmark, summaries, strategies);
   }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ struct BenchmarkTable {
   std::vector<BenchmarkDifference> differences;  ///< over the runs that the rows are over
   std::size_t planned{0};                        ///< runs of the benchmark
   std::size_t done{0};                           ///< runs that are done
-  std::size_t each_strategy{0};                  ///< runs of each strategy that the rows are over
+  std::size_t each_strategy{0};                  ///< pairs of scene and seed that the rows are over
 
   [[nodiscard]] bool is_complete() const { return done == planned; }
 };
@@ -42,9 +43,11 @@ struct BenchmarkTable {
 /// Returns our strategies, at each number of views for which there is a published figure and at the protocol's own,
 /// then the published figures. The rows of strategies are over the runs (scene and seed) that all of them have, so that
 /// those of an interrupted benchmark are about the same objects. A strategy without any run has no rows.
+/// @param of_one_seed  strategies whose runs are the same with every seed; they have a run for any seed of a scene
 /// @param planned  runs of the benchmark
 [[nodiscard]] BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
-                                             const ComparedRuns& compared, std::size_t planned);
+                                             const ComparedRuns& compared, const std::set<std::string>& of_one_seed,
+                                             std::size_t planned);
 
 /// Says how the first strategy compares with each published figure at its number of views: short of it, which comes
 /// first, or reached. The first view is given and not compared. Nothing is said before all runs are done.

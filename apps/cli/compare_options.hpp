@@ -32,6 +32,8 @@ struct CompareOptions {
   std::size_t jobs{0};        ///< runs at once; 0: as many as threads
   /// The other strategies get as many views as sphere took with the same scene, noise and seed.
   bool equal_views{false};
+  /// Runs that no seed changes have the first seed alone (Comparison::is_same_for_all_seeds).
+  bool same_runs_once{false};
   MachineOptions machines;
   const CLI::Option* program_seed{nullptr};  ///< --seed of the program, which is not for campaigns; null: there is none
 

@@ -195,6 +195,12 @@ PlannedRun Comparison::plan_again(const CampaignIndex& found, const PlannedRun& 
   return now;
 }
 
+bool Comparison::is_same_for_all_seeds(const NamedPlanner& strategy, const std::string& noise) const {
+  SimulatedRunConfig run;
+  set_noise(run, noise);
+  return !run.noise && !arm_ && !strategy.uses_seed;
+}
+
 std::vector<PlannedRun> Comparison::plan(const CampaignIndex& found) const {
   std::vector<PlannedRun> runs;
   SettingsTexts texts;
@@ -202,6 +208,8 @@ std::vector<PlannedRun> Comparison::plan(const CampaignIndex& found) const {
     for (const std::string& noise : options_.noises) {
       for (const std::uint64_t seed : options_.seeds) {
         for (const NamedPlanner& strategy : options_.strategies) {
+          const bool is_again = seed != options_.seeds.front() && is_same_for_all_seeds(strategy, noise);
+          if (options_.same_runs_once && is_again) continue;
           PlannedRun run{scene, strategy, noise, seed, options_.run.run.exploration.max_views, false};
           if (options_.equal_views && strategy.name != kEqualViewsOf) run.max_views.reset();
           runs.push_back(plan_again(found, run, texts));

@@ -50,6 +50,9 @@ class Comparison {
   [[nodiscard]] std::string robot_name() const { return arm_ ? arm_->name() : "free"; }
   /// Choices that were made when the arm was read.
   [[nodiscard]] const std::vector<std::string>& arm_choices() const { return arm_choices_; }
+  /// Tells whether no seed changes the runs of a strategy: there is no noise, no arm that plans by chance, and no
+  /// chance in the choice of views.
+  [[nodiscard]] bool is_same_for_all_seeds(const NamedPlanner& strategy, const std::string& noise) const;
   /// All runs in their order. found: those that are done.
   [[nodiscard]] std::vector<PlannedRun> plan(const CampaignIndex& found) const;
   /// One of them as things are now.

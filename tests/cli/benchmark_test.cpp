@@ -245,6 +245,29 @@ TEST(BenchmarkEvidence, DifferencesAreOverObjects) {
   EXPECT_EQ(std::count(lines[1].begin(), lines[1].end(), ','), std::count(lines[0].begin(), lines[0].end(), ','));
 }
 
+TEST(BenchmarkEvidence, ARunThatNoSeedChangesStandsForAllSeeds) {
+  if (kSanitized) GTEST_SKIP() << "its images have the size of the protocol's";
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  const auto seeds = [&](const char* list) {
+    return run_program({"benchmark", "household", "--only", "hare", "--strategies", "random,standard", "--seeds", list,
+                        "--out", out.string(), "--quiet", "--json", (folder / "result.json").string()});
+  };
+  ASSERT_EQ(seeds("1").status, 0);
+  const Shares of_standard = shares_in(out / "curves.csv", "hare,standard,1,6");
+  const Outcome more = seeds("1-2");
+  ASSERT_EQ(more.status, 0) << more.err;
+  EXPECT_NE(more.out.find("1 done now, 2 found"), std::string::npos) << more.out;
+  const Shares one = shares_in(out / "curves.csv", "hare,random,1,6");
+  const Shares two = shares_in(out / "curves.csv", "hare,random,2,6");
+  EXPECT_NE(one.of_all, two.of_all);
+  const nlohmann::json told = read_json(folder / "result.json")->at("result").at("benchmark");
+  EXPECT_EQ(told.at("complete"), true);
+  EXPECT_EQ(told.at("runs").dump(), R"({"done":3,"each_strategy":2,"planned":3})");
+  EXPECT_NEAR(told.at("table")[0].at("of_all").at("mean"), 0.5 * (one.of_all + two.of_all), 1e-9);
+  EXPECT_NEAR(told.at("table")[1].at("of_all").at("mean"), of_standard.of_all, 1e-9);
+}
+
 TEST(BenchmarkCommand, InterruptedOrKilledItKeepsWhatWasDoneAndGoesOn) {
   if (kSanitized) GTEST_SKIP() << "its images have the size of the protocol's";
   const TempFolder folder;

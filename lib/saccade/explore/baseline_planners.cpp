@@ -19,7 +19,7 @@ NamedPlanner baseline(std::string name, std::string text, std::string unit, Make
     parts.config.tries = kTries;
     return parts;
   };
-  return {std::move(name), std::move(text), kAnyGain, false, false, make, std::move(unit)};
+  return {std::move(name), std::move(text), kAnyGain, false, false, make, std::move(unit), false};
 }
 
 NamedPlanner volumetric(VolumetricInformation information, std::string text, std::string unit) {

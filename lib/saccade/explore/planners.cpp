@@ -90,7 +90,7 @@ NamedPlanner surface_planner() {
   return {"surface", "views of contours and of what is missing, by the surface that they are expected to show, in cm²",
           2.0,       false,
           false,     make,
-          "cm²"};
+          "cm²",     false};
 }
 
 NamedPlanner attention_planner() {
@@ -103,8 +103,10 @@ NamedPlanner attention_planner() {
     }
     return PlannerParts{std::make_shared<SalientObjects>(attention), contour_views_of(setup), rays(setup), planner};
   };
-  return {"attention", "views of the contours of what looks like an object, the most salient first", 50.0, false, false,
-          make};
+  return {"attention", "views of the contours of what looks like an object, the most salient first",
+          50.0,        false,
+          false,       make,
+          "rays",      false};
 }
 
 NamedPlanner one_shot(const NamedPlanner& planner) {
@@ -122,14 +124,18 @@ NamedPlanner one_shot(const NamedPlanner& planner) {
 
 Planners builtin_planners() {
   Planners planners;
+  const auto add_without_chance = [&planners](NamedPlanner planner) {
+    planner.uses_seed = false;
+    planners.add(std::move(planner));
+  };
   planners.add(surface_planner());
   planners.add(attention_planner());
-  planners.add({"standard", "of all contours, the view of most unknown space", 200.0, false, false,
-                [](const PlannerSetup& setup) {
-                  return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup), rays(setup),
-                                      with_tries(setup, kContourTries)};
-                }});
-  planners.add(
+  add_without_chance({"standard", "of all contours, the view of most unknown space", 200.0, false, false,
+                      [](const PlannerSetup& setup) {
+                        return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup), rays(setup),
+                                            with_tries(setup, kContourTries)};
+                      }});
+  add_without_chance(
       {"sphere", "best gain on the view sphere around each region", 200.0, true, false, [](const PlannerSetup& setup) {
          ViewPlannerConfig planner = with_tries(setup, kAllViews);
          planner.asks_robot_first = !setup.as_printed;

@@ -50,6 +50,7 @@ struct NamedPlanner {
   bool needs_truth{false};
   std::function<PlannerParts(const PlannerSetup& setup)> make;
   std::string gain_unit{"rays"};
+  bool uses_seed{true};  ///< PlannerSetup::seed changes its views
 };
 
 /// Planners of a program, in their order.

@@ -27,7 +27,10 @@ double normal(std::uint64_t key) {
 }
 
 /// Returns the share of lost returns at an angle of incidence: 0 up to grazing_from_rad, then linear up to 1 at 90°.
-double lost_share(const DepthNoise& noise, double incidence_cosine) {
+/// @param grazing_cosine  of grazing_from_rad
+double lost_share(const DepthNoise& noise, double grazing_cosine, double incidence_cosine) {
+  constexpr double kRounding{1e-9};
+  if (incidence_cosine > grazing_cosine + kRounding) return 0.0;  // spares most pixels the arc cosine
   const double angle_rad = std::acos(std::clamp(incidence_cosine, 0.0, 1.0));
   const double span_rad = 90_deg - noise.grazing_from_rad;
   return span_rad > 0.0 ? std::max(0.0, (angle_rad - noise.grazing_from_rad) / span_rad) : 0.0;
@@ -54,6 +57,7 @@ DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uin
   SACCADE_EXPECTS(incidence_cosine == nullptr || incidence_cosine->size() == depth.size());
   constexpr std::uint64_t kNumbersPerPixel{16};
   DepthImage noisy = depth;
+  const double grazing_cosine = std::cos(noise.grazing_from_rad);
   const std::uint64_t frame_key = mixed(mixed(noise.seed) ^ frame);
   for (std::size_t i = 0; i < noisy.size(); ++i) {
     const double z = noisy.data()[i];
@@ -66,7 +70,7 @@ DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uin
     }
     bool lost = unit(mixed(key + 12)) < noise.dropout || !(measured > 0.0);
     if (incidence_cosine != nullptr) {
-      lost = lost || unit(mixed(key + 13)) < lost_share(noise, incidence_cosine->data()[i]);
+      lost = lost || unit(mixed(key + 13)) < lost_share(noise, grazing_cosine, incidence_cosine->data()[i]);
     }
     noisy.data()[i] = lost ? 0.0F : static_cast<float>(measured);
   }

@@ -37,7 +37,7 @@ Result<GroundTruth> GroundTruth::build(const RayScene& scene, double spacing_m, 
   if (objects.triangles.empty()) return Error{Errc::invalid_argument, "there is nothing but supports", "truth"};
   SACCADE_TRY(MeshDistance object_distance, MeshDistance::build(objects));
   SACCADE_TRY(Solids bodies, Solids::build(scene, [](const SceneObject&) { return true; }));
-  Data data{scene, std::move(bodies), spacing_m, {}, {}, std::move(object_distance), std::nullopt};
+  Data data{scene, std::move(bodies), spacing_m, {}, {}, std::move(object_distance), std::nullopt, nothing_kept()};
   if (!supports.triangles.empty()) {
     SACCADE_TRY(data.supports, MeshDistance::build(supports));
   }

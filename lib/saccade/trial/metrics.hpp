@@ -4,6 +4,7 @@
 // ObjectShape (thesis §2.4.1), count_contacts. Definitions: docs/reference/metrics.md.
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,7 +23,9 @@ namespace saccade {
 /// Default distance between samples of the true surfaces.
 constexpr double kTruthSpacing_m{0.004};
 
-/// Reference for maps of a scene. Cheap to copy.
+class SpaceNearObjects;
+
+/// Reference for maps of a scene. Cheap to copy; const use from many threads is safe.
 class GroundTruth {
  public:
   /// Samples the surfaces, one point per spacing_m², and determines which points are observable. Answers
@@ -46,8 +49,14 @@ class GroundTruth {
                                                   const Executor& executor) const;
   /// Tells whether p lies inside any object or support.
   [[nodiscard]] bool inside_solid(const Eigen::Vector3d& p) const;
+  /// Returns the voxels that unknown_near_objects counts where they are unknown. Finds them at the first call for a
+  /// size of voxels, and keeps those of the last size.
+  [[nodiscard]] std::shared_ptr<const SpaceNearObjects> space_near_objects(double voxel_size_m,
+                                                                           const Executor& executor) const;
 
  private:
+  struct Kept;
+  [[nodiscard]] static std::shared_ptr<Kept> nothing_kept();
   struct Data {
     RayScene scene;
     Solids bodies;
@@ -56,6 +65,7 @@ class GroundTruth {
     std::vector<Eigen::Vector3f> observable_normals;
     MeshDistance objects;
     std::optional<MeshDistance> supports;
+    std::shared_ptr<Kept> kept;
   };
   explicit GroundTruth(std::shared_ptr<const Data> data) : data_{std::move(data)} {}
   std::shared_ptr<const Data> data_;
@@ -85,6 +95,7 @@ constexpr double kNearObjects_m{0.03};
                                    const Executor& executor);
 
 /// Unknown voxels in the workspace outside the solids, their centre within kNearObjects_m of an object's surface.
+/// O(bricks near the objects), after GroundTruth::space_near_objects.
 [[nodiscard]] std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& map,
                                                const Executor& executor);
 

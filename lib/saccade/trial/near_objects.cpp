@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// unknown_near_objects, newly_known: counts of voxels near true surfaces. A cube of voxels that is surely near or
-// surely far is decided by the distance of its middle; the rest is asked voxel by voxel.
+// SpaceNearObjects, unknown_near_objects, newly_known: voxels near true surfaces. A cube of voxels that is surely near
+// or surely far is decided by the distance of its middle; the rest is asked voxel by voxel.
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <numeric>
 #include <vector>
 
@@ -77,8 +79,34 @@ Count sum_over_bricks(const IndexBox& voxels, const Executor& executor, const Me
 
 }  // namespace
 
-std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& map, const Executor& executor) {
-  const double e = map.config.voxel_size_m;
+/// Voxels near objects, brick by brick. Immutable.
+class SpaceNearObjects {
+ public:
+  struct Brick {
+    Index3 key;
+    Mask512 voxels;
+  };
+  SpaceNearObjects(std::vector<Brick> bricks, double voxel_size_m)
+      : bricks_{std::move(bricks)}, voxel_size_m_{voxel_size_m} {}
+
+  [[nodiscard]] double voxel_size_m() const { return voxel_size_m_; }
+
+  [[nodiscard]] std::size_t unknown_in(const TsdfGrid& grid) const {
+    return std::accumulate(bricks_.begin(), bricks_.end(), std::size_t{0}, [&](std::size_t sum, const Brick& brick) {
+      return sum + static_cast<std::size_t>((grid.unknown_in(brick.key) & brick.voxels).count());
+    });
+  }
+
+ private:
+  std::vector<Brick> bricks_;
+  double voxel_size_m_;
+};
+
+namespace {
+
+/// Finds the voxels in the workspace and outside the solids, their centre within kNearObjects_m of an object's surface.
+std::vector<SpaceNearObjects::Brick> bricks_near_objects(const GroundTruth& truth, double voxel_size_m,
+                                                         const Executor& executor) {
   const Box& workspace = truth.scene().scene().workspace;
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
   Vector3d high = -low;
@@ -91,20 +119,54 @@ std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& m
   }
   low = (low - Vector3d::Constant(kNearObjects_m)).cwiseMax(workspace.min);
   high = (high + Vector3d::Constant(kNearObjects_m)).cwiseMin(workspace.max);
-  if (!(low.array() < high.array()).all()) return 0;
-  const IndexBox box{voxel_at(low, e), voxel_at(high, e) + Index3{1, 1, 1}};
-  const NearVoxels near{truth, e, kNearObjects_m};
-  return sum_over_bricks<std::size_t>(box, executor, [&](const Index3& brick) {
-    const Index3 lo = brick * kBrickEdge;
-    const Mask512 wanted = map.grid.unknown_in(brick) & voxels_inside(box, lo);
-    std::size_t count = 0;
-    if (wanted.none()) return count;
-    near.among(wanted & voxels_inside(workspace, lo, e), lo).for_each([&](std::size_t i) {
-      const Index3 voxel = lo + child_offset(static_cast<int>(i));
-      count += truth.inside_solid(voxel_center(voxel, e)) ? 0 : 1;
+  if (!(low.array() < high.array()).all()) return {};
+  const IndexBox box{voxel_at(low, voxel_size_m), voxel_at(high, voxel_size_m) + Index3{1, 1, 1}};
+  const IndexBox keys = parents(box);
+  const NearVoxels near{truth, voxel_size_m, kNearObjects_m};
+  std::vector<std::vector<SpaceNearObjects::Brick>> layers(static_cast<std::size_t>(keys.size().z));
+  executor.parallel_for(layers.size(), 1, [&](std::size_t layer, std::size_t) {
+    keys.layer(layer).for_each([&](const Index3& key) {
+      const Index3 lo = key * kBrickEdge;
+      const Mask512 asked = voxels_inside(box, lo) & voxels_inside(workspace, lo, voxel_size_m);
+      Mask512 voxels;
+      near.among(asked, lo).for_each([&](std::size_t i) {
+        const Index3 voxel = lo + child_offset(static_cast<int>(i));
+        if (!truth.inside_solid(voxel_center(voxel, voxel_size_m))) voxels.set(static_cast<int>(i));
+      });
+      if (!voxels.none()) layers[layer].push_back({key, voxels});
     });
-    return count;
   });
+  std::vector<SpaceNearObjects::Brick> bricks;
+  for (const auto& layer : layers) bricks.insert(bricks.end(), layer.begin(), layer.end());
+  return bricks;
+}
+
+}  // namespace
+
+struct GroundTruth::Kept {
+  std::mutex mutex;
+  std::shared_ptr<const SpaceNearObjects> near;
+};
+
+std::shared_ptr<GroundTruth::Kept> GroundTruth::nothing_kept() { return std::make_shared<Kept>(); }
+
+std::shared_ptr<const SpaceNearObjects> GroundTruth::space_near_objects(double voxel_size_m,
+                                                                        const Executor& executor) const {
+  Kept& kept = *data_->kept;
+  {
+    const std::lock_guard lock{kept.mutex};
+    if (kept.near && kept.near->voxel_size_m() == voxel_size_m) return kept.near;
+  }
+  // Not under the lock: a thread that waits for its loop may begin another task that asks for the same.
+  auto near =
+      std::make_shared<const SpaceNearObjects>(bricks_near_objects(*this, voxel_size_m, executor), voxel_size_m);
+  const std::lock_guard lock{kept.mutex};
+  kept.near = near;
+  return near;
+}
+
+std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& map, const Executor& executor) {
+  return truth.space_near_objects(map.config.voxel_size_m, executor)->unknown_in(map.grid);
 }
 
 ObservedGain newly_known(const GroundTruth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,

@@ -53,6 +53,24 @@ TEST_F(ContourPlanners, RandomContoursAreAShuffleThatTheSeedDecides) {
   EXPECT_NE(first_of(1, 0), first_of(1, 1));
 }
 
+TEST_F(ContourPlanners, TheSeedChangesTheViewsOfThoseThatUseItAlone) {
+  SimulatedRunConfig coarse = config();
+  coarse.contour_views.roll_step_rad = 360_deg;
+  coarse.gain_width_px = 16;
+  const Planners planners = trial_planners();
+  for (const NamedPlanner& named : planners.all()) {
+    const auto best_of = [&](std::uint64_t seed) {
+      SimulatedRunConfig seeded = coarse;
+      seeded.seed = seed;
+      seeded.planner.min_gain = 1e-9;
+      const Ranking ranking = ranked(planner(named.name, seeded), scene(scanned()));
+      EXPECT_FALSE(ranking.empty()) << named.name;
+      return ranking.empty() ? Eigen::Matrix4d{} : ranking.best().T_world_camera.matrix().eval();
+    };
+    EXPECT_EQ(best_of(1) != best_of(2), named.uses_seed) << named.name;
+  }
+}
+
 /// Baselines choose from the views of standard, by gains of their own.
 TEST_F(ContourPlanners, BaselinesRankTheContourViews) {
   SimulatedRunConfig coarse = config();

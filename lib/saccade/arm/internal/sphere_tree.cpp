@@ -75,11 +75,25 @@ struct Ball {
   double radius_m;
 };
 
+struct Farthest {
+  std::size_t point{0};
+  double squared_m2{0.0};
+};
+
+/// Returns the farthest of the points, the first of several.
+Farthest farthest_from(const Vector3d& center, const std::vector<Vector3d>& points) {
+  Farthest farthest;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (const double squared_m2 = (points[i] - center).squaredNorm(); squared_m2 > farthest.squared_m2) {
+      farthest = {i, squared_m2};
+    }
+  }
+  return farthest;
+}
+
 /// Returns a ball with this centre whose radius reaches all points.
 Ball reaching(const Vector3d& center, const std::vector<Vector3d>& points) {
-  double squared = 0.0;
-  for (const Vector3d& p : points) squared = std::max(squared, (p - center).squaredNorm());
-  return {center, std::sqrt(squared)};
+  return {center, std::sqrt(farthest_from(center, points).squared_m2)};
 }
 
 /// Returns a small ball around points: the centre moves towards the farthest by ever smaller steps (Bădoiu and Clarkson
@@ -89,13 +103,12 @@ Ball ball_around(const std::vector<Vector3d>& points) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) box.extend(p);
   Vector3d center = box.center();
-  Ball best = reaching(center, points);
+  Farthest farthest = farthest_from(center, points);
+  Ball best{center, std::sqrt(farthest.squared_m2)};
   for (int i = 1; i <= kSteps; ++i) {
-    const auto farthest = std::max_element(points.begin(), points.end(), [&](const Vector3d& a, const Vector3d& b) {
-      return (a - center).squaredNorm() < (b - center).squaredNorm();
-    });
-    center += (*farthest - center) / (i + 1.0);
-    if (const Ball ball = reaching(center, points); ball.radius_m < best.radius_m) best = ball;
+    center += (points[farthest.point] - center) / (i + 1.0);
+    farthest = farthest_from(center, points);
+    if (const double radius_m = std::sqrt(farthest.squared_m2); radius_m < best.radius_m) best = {center, radius_m};
   }
   return best;
 }

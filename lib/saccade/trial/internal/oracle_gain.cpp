@@ -45,7 +45,7 @@ NamedPlanner oracle_planner() {
                         std::make_shared<ContourViews>(setup.contour_views, setup.contours),
                         std::make_shared<OracleGain>(*setup.truth, setup.camera, setup.gain.tilt_rad), setup.planner};
   };
-  return {"oracle", "the view that shows most, chosen with the scene known", 200.0, false, true, make, "points"};
+  return {"oracle", "the view that shows most, chosen with the scene known", 200.0, false, true, make, "points", false};
 }
 
 }  // namespace saccade

@@ -145,7 +145,7 @@ NamedPlanner pair_oracle_planner() {
   return {"oracle-2", "the first of the two views that together show most, chosen with the scene known",
           200.0,      false,
           true,       make,
-          "points"};
+          "points",   false};
 }
 
 }  // namespace saccade
