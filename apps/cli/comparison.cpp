@@ -67,6 +67,7 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
   if (config.strategy.name == attention_planner().name) settings["rival_share"] = config.planner.rival_share;
   if (config.strategy.name == kVolumetricInformationNames.of(VolumetricInformation::area_factor))
     settings["touched_of"] = "rays, else box";
+  if (config.strategy.name.ends_with(kOneShotSuffix)) settings["one_shot"] = "promises, then distance";
   if (config.arm) {
     settings["robot_hash"] = arm_hash;
     settings["planner"] = config.arm_robot.planner.planner;

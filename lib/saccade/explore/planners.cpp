@@ -111,7 +111,7 @@ NamedPlanner attention_planner() {
 
 NamedPlanner one_shot(const NamedPlanner& planner) {
   NamedPlanner once = planner;
-  once.name += "-one-shot";
+  once.name += kOneShotSuffix;
   once.text = "as " + planner.name + ", but all views are chosen at once after the first look";
   once.make = [make = planner.make](const PlannerSetup& setup) {
     PlannerParts parts = make(setup);

@@ -73,6 +73,7 @@ class Planners {
 [[nodiscard]] NamedPlanner surface_planner();
 /// Returns the planner by the most salient object's contours. Thesis §3.1, Algorithm 4.
 [[nodiscard]] NamedPlanner attention_planner();
+inline constexpr std::string_view kOneShotSuffix{"-one-shot"};
 /// Returns the planner that chooses all its views at once from what the first look promises: OneShotGain over the gain
 /// of `planner`, named "NAME-one-shot".
 [[nodiscard]] NamedPlanner one_shot(const NamedPlanner& planner);

@@ -11,12 +11,16 @@ namespace saccade {
 struct OneShotConfig {
   std::size_t max_views{12};    ///< length of the plan
   std::size_t considered{512};  ///< candidates with the largest gain that the plan is chosen from
-  double min_addition{1e-9};    ///< a view that adds less to those before it ends the plan; unit of the gain
+  /// A view that adds less than this share of the first one's promise to those before it is not chosen by what it adds.
+  double least_share{0.1};
+  double min_addition{1e-9};  ///< the same, in the unit of the gain; also the gain of views that are not chosen by it
 };
 
 /// Plans once: of the candidates' promises, the sequence that makes most known (best_sequence), the greedy solution of
-/// the set covering that one-shot planners predict. Later calls return what is left of the plan, whatever was seen
-/// since. Unlike other gains it keeps its plan from call to call, so a run with it cannot be resumed in between.
+/// the set covering that one-shot planners predict. The first look promises nothing of what it cannot guess, so once
+/// little is added, the views farthest from those of the plan follow (decision 0044). Later calls return what is left
+/// of the plan, whatever was seen since. Unlike other gains it keeps its plan from call to call, so a run with it
+/// cannot be resumed in between.
 class OneShotGain final : public Gain {
  public:
   /// @param inner  gain that makes promises; without promises the plan has the views of largest gain.
@@ -33,6 +37,10 @@ class OneShotGain final : public Gain {
  private:
   [[nodiscard]] Status plan(const PlanningContext& context, const RegionOfInterest& region,
                             std::span<const Pose> T_world_camera);
+  /// Adds the views that add enough to those before them.
+  void add_promising(const RankedViews& ranked, const Executor& executor);
+  /// Adds the view whose camera is farthest from those of the plan, until the plan is full.
+  void add_distant(const PlanningContext& context, std::span<const Pose> T_world_camera);
 
   std::shared_ptr<Gain> inner_;
   OneShotConfig config_;

@@ -78,7 +78,7 @@ TEST(OneShotGain, CoversWhatIsPromisedAndNeverPlansAgain) {
   // View 1 shows most; view 2 shows much of the same, so view 3 comes before it, and view 2 adds a single voxel.
   const auto inner = std::make_shared<PromisingGain>(
       std::map<int, std::vector<int>>{{0, {0}}, {1, {0, 1, 2, 3, 4}}, {2, {1, 2, 3, 9}}, {3, {6, 7}}});
-  OneShotGain gain{inner, {.max_views = 8}};
+  OneShotGain gain{inner, {.max_views = 3}};
   Planned scene{4};
   const auto plan = scene.ask(gain);
   ASSERT_TRUE(plan);
@@ -94,13 +94,37 @@ TEST(OneShotGain, CoversWhatIsPromisedAndNeverPlansAgain) {
   EXPECT_EQ(inner->asked, 1);
 }
 
-TEST(OneShotGain, EndsAfterItsViewsAndWhereTooLittleIsAdded) {
+TEST(OneShotGain, OnceLittleIsAddedTheFarthestViewsFollow) {
+  std::map<int, std::vector<int>> shown{{3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}}, {4, {10, 11}}, {8, {12}}};
+  for (const int promises_nothing : {0, 1, 2, 5, 6, 7}) shown[promises_nothing] = {};
+  Planned scene{9};
+  OneShotGain gain{std::make_shared<PromisingGain>(shown), {.max_views = 5, .least_share = 0.2, .min_addition = 0.5}};
+  const auto plan = scene.ask(gain);
+  ASSERT_TRUE(plan);
+  // Views 3 and 4 by what they add; view 8 adds too little, but is as far as they come, then view 0. Views 1, 2 and 6
+  // are near, and the last is the farthest of the rest.
+  EXPECT_EQ(heights_of(*plan), (std::vector<int>{3, 4, 8, 0, 6}));
+  EXPECT_EQ(plan->views[1].gain, 2.0);
+  EXPECT_EQ(plan->views[2].gain, 0.5);
+
+  Planned tried{9};
+  tried.tried = {8};  // a view that was taken counts as one of the plan
+  OneShotGain after{std::make_shared<PromisingGain>(shown), {.max_views = 3, .least_share = 0.2}};
+  EXPECT_EQ(heights_of(*tried.ask(after)), (std::vector<int>{3, 4, 0}));
+
+  const std::map<int, std::vector<int>> nothing{{0, {}}, {1, {}}};
+  OneShotGain empty{std::make_shared<PromisingGain>(nothing), {.max_views = 2}};
+  Planned two{2};
+  EXPECT_TRUE(two.ask(empty)->views.empty()) << "there is nothing to explore";
+}
+
+TEST(OneShotGain, EndsAfterItsViews) {
   const std::map<int, std::vector<int>> shown{{0, {0, 1, 2}}, {1, {3, 4}}, {2, {5}}};
   Planned scene{3};
   OneShotGain two{std::make_shared<PromisingGain>(shown), {.max_views = 2}};
   EXPECT_EQ(heights_of(*scene.ask(two)), (std::vector<int>{0, 1}));
-  OneShotGain choosy{std::make_shared<PromisingGain>(shown), {.max_views = 3, .min_addition = 2.0}};
-  EXPECT_EQ(heights_of(*scene.ask(choosy)), (std::vector<int>{0, 1}));
+  OneShotGain more{std::make_shared<PromisingGain>(shown), {.max_views = 8, .min_addition = 2.0}};
+  EXPECT_EQ(heights_of(*scene.ask(more)), (std::vector<int>{0, 1, 2})) << "there are no others";
 }
 
 TEST(FixedViews, AreTheSameWhateverTheMap) {

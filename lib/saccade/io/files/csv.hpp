@@ -13,8 +13,8 @@
 
 namespace saccade {
 
-/// CSV table. Lines end in
-/// . Numbers are the shortest text that reads back to the same value, in any locale.
+/// CSV table. Each line ends in a line feed. Numbers are the shortest text that reads back to the same value, in any
+/// locale.
 class CsvTable {
  public:
   explicit CsvTable(const std::vector<std::string_view>& columns);
