@@ -169,9 +169,8 @@ std::string incomplete_text(const BenchmarkTable& table) {
                      " runs so far; nothing is said beside published figures\n          ";
   if (table.each_strategy == 0) return text + "there is no object that all strategies with runs have in common yet\n";
   return text + "the table has " + std::to_string(table.each_strategy) + (table.each_strategy == 1 ? " run" : " runs") +
-         " of each strategy: the objects, first views and seeds that all strategies with runs have in common (a run "
-         "that "
-         "no seed changes counts for each)\n";
+         " of each strategy: the objects, first views and seeds that all strategies with runs have in common; a run "
+         "that no seed changes counts for each\n";
 }
 
 /// Width of the first column.
