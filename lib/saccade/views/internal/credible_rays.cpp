@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "saccade/views/internal/find_supports.hpp"
-#include "saccade/views/internal/volume_walk.hpp"
+#include "saccade/views/internal/sight_line.hpp"
 
 namespace saccade {
 namespace {
@@ -18,38 +18,14 @@ constexpr double kSupportThickness_m{0.05};
 
 double above_m(const Support& support, const Vector3d& p) { return p.z() - support.height_at(p.head<2>()); }
 
-/// Ray from a camera to the end of its range.
-struct Ray {
-  Vector3d from_m;
-  Vector3d to_m;
-
-  [[nodiscard]] Vector3d at(double share) const { return from_m + share * (to_m - from_m); }
-  /// Returns the share of the ray at which it passes a support's plane, if it does.
-  [[nodiscard]] std::optional<double> passes(const Support& support) const {
-    const double begin_m = above_m(support, from_m);
-    const double rise_m = above_m(support, to_m) - begin_m;
-    if (rise_m == 0.0) return std::nullopt;
-    const double share = -begin_m / rise_m;
-    return share >= 0.0 && share <= 1.0 ? std::optional{share} : std::nullopt;
-  }
-  /// Returns the share of the ray at which it finally leaves a closed box, if it passes through it.
-  [[nodiscard]] std::optional<double> leaves(const Box& box) const {
-    double enter{0.0};
-    double leave{1.0};
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const double step_m = to_m[axis] - from_m[axis];
-      if (step_m == 0.0) {
-        if (from_m[axis] < box.min[axis] || from_m[axis] > box.max[axis]) return std::nullopt;
-        continue;
-      }
-      const double a = (box.min[axis] - from_m[axis]) / step_m;
-      const double b = (box.max[axis] - from_m[axis]) / step_m;
-      enter = std::max(enter, std::min(a, b));
-      leave = std::min(leave, std::max(a, b));
-    }
-    return enter <= leave ? std::optional{leave} : std::nullopt;
-  }
-};
+/// Returns the share of the ray at which it passes a support's plane, if it does.
+std::optional<double> share_at(const Support& support, const SightRay& ray) {
+  const double begin_m = above_m(support, ray.from_m);
+  const double rise_m = above_m(support, ray.to_m) - begin_m;
+  if (rise_m == 0.0) return std::nullopt;
+  const double share = -begin_m / rise_m;
+  return share >= 0.0 && share <= 1.0 ? std::optional{share} : std::nullopt;
+}
 
 /// Returns the box of all voxels with their centre in the region, grown by half a voxel, which exceeds any rounding.
 Box grown_bounds(const Region& region, double voxel_size_m) {
@@ -64,34 +40,23 @@ Box grown_bounds(const Region& region, double voxel_size_m) {
 struct CredibleRays::Scene {
   StateVolume volume;
   std::vector<Support> supports;
-  bool holds_surface{false};  ///< whether any voxel is occupied
-  Region region;
+  bool holds_surface;  ///< whether any voxel is occupied
+  SightClasses classes;
   Box around_region;
-  UnknownOutside outside;
   PinholeCamera sensor;
   Trust trust{Trust::credible};
   OwnBody own_body;
   Credit credit;
 
-  Scene(StateVolume states, const PlanningContext& context, const Region& bounds, const PinholeCamera& looks,
+  Scene(StateVolume states, const PlanningContext& context, const Region& region, const PinholeCamera& looks,
         UnknownOutside unknown_outside)
       : volume{std::move(states)},
         supports{find_supports(context.map, volume, kMinSupport_m2, context.executor)},
-        region{bounds},
-        around_region{grown_bounds(bounds, volume.voxel_size_m())},
-        outside{unknown_outside},
+        holds_surface{any_occupied(volume.data(), volume.size())},
+        classes{volume, region, unknown_outside, context.executor},
+        around_region{grown_bounds(region, volume.voxel_size_m())},
         sensor{looks},
-        credit{context.checked, looks, volume, 1.5 * volume.voxel_size_m()} {
-    for (std::size_t i = 0; i < volume.size() && !holds_surface; ++i) {
-      holds_surface = volume[i] == VoxelState::occupied;
-    }
-  }
-
-  struct Met {
-    std::size_t voxel{0};
-    double share{0.0};  ///< along the ray
-    bool returns{false};
-  };
+        credit{context.checked, looks, volume, 1.5 * volume.voxel_size_m()} {}
 
   /// Returns the column of a place in the grid of a support; nullopt outside.
   [[nodiscard]] std::optional<std::size_t> column_of(const Vector3d& p) const {
@@ -114,47 +79,23 @@ struct CredibleRays::Scene {
   }
 
   /// Tells whether the ray reaches its voxel through a support or from below one.
-  [[nodiscard]] bool is_hidden(const Ray& ray, double met) const {
+  [[nodiscard]] bool is_hidden(const SightRay& ray, double met) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
       if (above_m(support, ray.from_m) >= 0.0) return false;
       const Vector3d p = ray.at(met);
-      if (above_m(support, p) > 0.0) return is_over(support, ray.at(ray.passes(support).value_or(met)));
+      if (above_m(support, p) > 0.0) return is_over(support, ray.at(share_at(support, ray).value_or(met)));
       if (!is_over(support, p)) return false;
       return above_m(support, p) > -kSupportThickness_m || !is_over_another(support, p);
     });
   }
 
   /// Tells whether the ray reaches a support from above after its voxel.
-  [[nodiscard]] bool ends_on_support(const Ray& ray, double met) const {
+  [[nodiscard]] bool ends_on_support(const SightRay& ray, double met) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
       if (above_m(support, ray.from_m) <= 0.0) return false;
-      const std::optional<double> passed = ray.passes(support);
+      const std::optional<double> passed = share_at(support, ray);
       return passed && *passed >= met && is_over(support, ray.at(*passed));
     });
-  }
-
-  /// Returns the unknown voxel that the ray promises; nullopt where there is none.
-  [[nodiscard]] std::optional<Met> promised(const Ray& ray) const {
-    const double nearest = sensor.min_range_m / sensor.max_range_m;
-    const std::optional<double> past_region = ray.leaves(around_region);
-    if (!past_region) return std::nullopt;  // holds for most rays of a small region, such as a hand's
-    std::optional<Met> met;
-    walk_line(volume, ray.from_m, ray.to_m, [&](std::size_t voxel, double share) {
-      const VoxelState state = volume[voxel];
-      if (state == VoxelState::empty) return !met && share > *past_region;
-      if (state == VoxelState::occupied) {
-        if (met) met->returns = true;
-        return true;
-      }
-      if (met) return false;
-      const bool inside = contains(region, voxel_center(volume.voxel(voxel), volume.voxel_size_m()));
-      if (!inside) return outside == UnknownOutside::blocks;
-      if (share < nearest) return true;
-      met = Met{voxel, share};
-      return !holds_surface;  // without any surface, no place of returns is known
-    });
-    if (met && !met->returns) met->returns = !holds_surface || ends_on_support(ray, met->share);
-    return met;
   }
 
   /// Counts of a look's rays.
@@ -175,13 +116,13 @@ struct CredibleRays::Scene {
   Tally cast(const PinholeCamera& rays, const Pose& T_world_camera, const Believed& believed,
              const IsBehindBody& is_behind_body) const;
 
-  [[nodiscard]] bool may_be_kept(const Ray& ray, const Met& met) const {
+  [[nodiscard]] bool may_be_kept(const SightRay& ray, const MetVoxel& met) const {
     return trust == Trust::blind || (met.returns && !is_hidden(ray, met.share));
   }
   /// Returns the credit of a promise that may be kept, in [0, 1].
-  [[nodiscard]] double worth(const Ray& ray, const Met& met) const {
+  [[nodiscard]] double worth(const SightRay& ray, const MetVoxel& met) const {
     if (trust == Trust::blind || credit.is_full()) return 1.0;
-    return credit.of(ray.at(met.share), credit.seen_from(met.voxel), ray.from_m);
+    return credit.of(ray.at(met.share), credit.seen_from(volume.index(classes.voxel(met.place))), ray.from_m);
   }
 };
 
@@ -214,20 +155,28 @@ CredibleRays::Scene::Tally CredibleRays::Scene::cast(const PinholeCamera& rays, 
                                                      const IsBehindBody& is_behind_body) const {
   Tally tally;
   if (!T_world_camera.matrix().allFinite()) return tally;  // gains reject such a pose
+  std::vector<SightRay> sight;
+  sight.reserve(static_cast<std::size_t>(rays.width) * static_cast<std::size_t>(rays.height));
   for (int v = 0; v < rays.height; ++v) {
     for (int u = 0; u < rays.width; ++u) {
       const Vector3d end{(u - rays.cx) / rays.fx, (v - rays.cy) / rays.fy, 1.0};
-      const Ray ray{T_world_camera.translation(), T_world_camera * (rays.max_range_m * end)};
-      const std::optional<Met> met = promised(ray);
-      if (!met) continue;
-      ++tally.promise;
-      if (!may_be_kept(ray, *met)) continue;
-      ++tally.may;
-      if (is_behind_body(*met, u, v)) continue;
-      const double credited = worth(ray, *met);
-      tally.worth += credited;
-      if (credited > 0.0) believed(*met, credited);
+      sight.push_back({T_world_camera.translation(), T_world_camera * (rays.max_range_m * end)});
     }
+  }
+  const double nearest = sensor.min_range_m / sensor.max_range_m;
+  std::vector<std::optional<MetVoxel>> met_by_ray = met_voxels(classes, around_region, sight);
+  for (std::size_t i = 0; i < sight.size(); ++i) {
+    if (!met_by_ray[i] || met_by_ray[i]->share < nearest) continue;
+    const SightRay& ray = sight[i];
+    MetVoxel& met = *met_by_ray[i];
+    ++tally.promise;
+    if (!met.returns) met.returns = !holds_surface || ends_on_support(ray, met.share);
+    if (!may_be_kept(ray, met)) continue;
+    ++tally.may;
+    if (is_behind_body(met, static_cast<int>(i) % rays.width, static_cast<int>(i) / rays.width)) continue;
+    const double credited = worth(ray, met);
+    tally.worth += credited;
+    if (credited > 0.0) believed(met, credited);
   }
   return tally;
 }
@@ -238,12 +187,12 @@ CredibleRays::Look CredibleRays::from(const Pose& T_world_camera) const {
   if (scene_->own_body) body = scene_->own_body(T_world_camera);
   SACCADE_EXPECTS(!body || (body->width() == sensor.width && body->height() == sensor.height));
   Look look;
-  const auto is_behind_body = [&](const Scene::Met& met, int u, int v) {
+  const auto is_behind_body = [&](const MetVoxel& met, int u, int v) {
     const double body_m = body ? static_cast<double>((*body)(u, v)) : 0.0;
     return body_m > 0.0 && body_m < met.share * sensor.max_range_m;
   };
-  const auto believed = [&](const Scene::Met& met, double worth) {
-    look.promise.voxels.push_back({scene_->volume.voxel(met.voxel), worth});
+  const auto believed = [&](const MetVoxel& met, double worth) {
+    look.promise.voxels.push_back({scene_->classes.voxel(met.place), worth});
   };
   const Scene::Tally tally = scene_->cast(sensor, T_world_camera, believed, is_behind_body);
   look.share = tally.share();
@@ -259,8 +208,7 @@ std::vector<CredibleRays::Glance> CredibleRays::glances(std::span<const Pose> T_
   executor.parallel_for(glances.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Scene::Tally tally = scene_->cast(
-          coarse, T_world_camera[i], [](const Scene::Met&, double) {},
-          [](const Scene::Met&, int, int) { return false; });
+          coarse, T_world_camera[i], [](const MetVoxel&, double) {}, [](const MetVoxel&, int, int) { return false; });
       glances[i] = {tally.worth / rays, tally.credit()};
     }
   });
