@@ -155,9 +155,15 @@ std::string file_name_of(const std::string& scene, std::set<std::string>& taken)
   return free + ".svg";
 }
 
-Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared) {
-  SACCADE_CHECK(runs_csv(compared.runs, compared.budget).write(folder / "runs.csv"));
-  SACCADE_CHECK(views_csv(compared.runs).write(folder / "views.csv"));
+Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared, const Executor& executor) {
+  std::array<Status, 2> written;
+  executor.parallel_for(written.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      written[i] = i == 0 ? write_views_csv(folder / "views.csv", compared.runs)
+                          : write_runs_csv(folder / "runs.csv", compared.runs, compared.budget);
+    }
+  });
+  for (const Status& status : written) SACCADE_CHECK(status);
   SACCADE_CHECK(summary_csv(compared.summaries).write(folder / "summary.csv"));
   std::string drawn;
   std::set<std::string> taken;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "saccade/core/executor.hpp"
 #include "saccade/report/plot.hpp"
 #include "saccade/trial/campaign_summary.hpp"
 
@@ -50,7 +51,8 @@ struct ComparedRuns {
 [[nodiscard]] std::string picture_name(const std::string& what, const std::string& scene);
 
 /// Writes runs.csv, views.csv, summary.csv and two pictures per scene into the folder. io_failure.
-[[nodiscard]] Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared);
+[[nodiscard]] Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared,
+                                      const Executor& executor);
 
 /// "50 views kept 97 % of what they promised (median); rank correlation 0.94; 1 kept less than a tenth". Expects a
 /// view.

@@ -146,7 +146,7 @@ Result<Outcome> report(Context& context, const Comparison& comparison, const Cam
   context.lap("read");
   const ComparedRuns results = compared(std::move(runs), comparison.budget());
   context.lap("statistics");
-  SACCADE_CHECK(write_comparison(out.path(), results));
+  SACCADE_CHECK(write_comparison(out.path(), results, context.executor()));
   context.lap("tables");
   Outcome outcome{.result = campaign_json(comparison, results, state.planned)};
   outcome.result["runs"].update(state.now);

@@ -61,11 +61,9 @@ TEST(CompareLargeEvidence, AMillionRowsAreOpenAndDrawnInFiveSeconds) {
   const double seconds = processor_s() - before;
   ASSERT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_EQ(drawn.json().at("result").at("runs").at("done"), 2 * seeds);
-  // Tables of all rows, some 380 MB, are beside the figure: their share of the wall time is taken off.
-  const nlohmann::json times_ms = drawn.json().at("timings_ms");
-  const double share = times_ms.at("tables").get<double>() / times_ms.at("total").get<double>();
-  std::cout << rows * seeds << " rows: " << times_ms.dump() << ", " << seconds << " s of the processor\n";
-  EXPECT_LT(seconds * (1.0 - share), 5.0) << rows * seeds << " rows";
+  std::cout << rows * seeds << " rows: " << drawn.json().at("timings_ms").dump() << ", " << seconds
+            << " s of the processor\n";
+  EXPECT_LT(seconds, 5.0) << rows * seeds << " rows, with tables of some 380 MB";
 }
 
 }  // namespace

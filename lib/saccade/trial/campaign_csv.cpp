@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 
 namespace saccade {
 namespace {
@@ -38,25 +39,39 @@ void add_view(CsvTable& table, const ViewRecord& view) {
   add_map(table, view.measures);
 }
 
+/// Writes a table of runs in parts, so that it takes little memory however many runs there are.
+/// @param add_rows  adds the rows of a run
+Status write_in_parts(const std::filesystem::path& path, std::span<const CampaignEntry> runs,
+                      const std::vector<std::string_view>& columns,
+                      const std::function<void(CsvTable& table, const CampaignEntry& entry)>& add_rows) {
+  constexpr std::size_t kPart{1U << 18U};  // bytes, which stay in the cache
+  SACCADE_TRY(AtomicFile file, AtomicFile::create(path));
+  CsvTable table{columns};
+  for (const CampaignEntry& entry : runs) {
+    add_rows(table, entry);
+    if (table.text().size() >= kPart) SACCADE_CHECK(table.move_to(file));
+  }
+  SACCADE_CHECK(table.move_to(file));
+  return file.commit();
+}
+
 }  // namespace
 
-CsvTable runs_csv(std::span<const CampaignEntry> runs, std::size_t budget) {
+Status write_runs_csv(const std::filesystem::path& path, std::span<const CampaignEntry> runs, std::size_t budget) {
   std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
   columns.emplace_back("stopped_because");
   for (const RunFigure& figure : run_figures()) columns.push_back(figure.name);
   columns.insert(columns.end(), {"program_version", "finished_at", "settings"});
-  CsvTable table{columns};
-  for (const CampaignEntry& entry : runs) {
+  return write_in_parts(path, runs, columns, [budget](CsvTable& table, const CampaignEntry& entry) {
     add_key(table, entry.key);
     table.add(to_string(entry.run.stopped_because));
     for (const RunFigure& figure : run_figures()) table.add(figure.of(entry, budget));
     table.add(entry.program_version).add(entry.finished_at).add(entry.key.settings);
     table.end_row();
-  }
-  return table;
+  });
 }
 
-CsvTable views_csv(std::span<const CampaignEntry> runs) {
+Status write_views_csv(const std::filesystem::path& path, std::span<const CampaignEntry> runs) {
   std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
   columns.emplace_back("number");
   columns.insert(columns.end(), kViewColumns.begin(), kViewColumns.end());
@@ -64,22 +79,20 @@ CsvTable views_csv(std::span<const CampaignEntry> runs) {
   for (const Phase phase : kPhaseNames.values) phases.push_back(std::string{to_string(phase)} + "_ms");
   columns.insert(columns.end(), phases.begin(), phases.end());
   columns.insert(columns.end(), kMapColumns.begin(), kMapColumns.end());
-  CsvTable table{columns};
-  for (const CampaignEntry& entry : runs) {
+  return write_in_parts(path, runs, columns, [](CsvTable& table, const CampaignEntry& entry) {
     add_key(table, entry.key);
+    const std::string key{table.fields()};
     table.add(std::uint64_t{0});
     // Columns that a scan lacks.
     for (std::size_t i = 0; i < kViewColumns.size() + kPhaseNames.values.size(); ++i) table.add(std::nullopt);
     add_map(table, entry.run.scan.measures);
     table.end_row();
     for (std::size_t i = 0; i < entry.run.views.size(); ++i) {
-      add_key(table, entry.key);
-      table.add(std::uint64_t{i + 1});
+      table.add_fields(key, kKeyColumns.size()).add(std::uint64_t{i + 1});
       add_view(table, entry.run.views[i]);
       table.end_row();
     }
-  }
-  return table;
+  });
 }
 
 namespace {

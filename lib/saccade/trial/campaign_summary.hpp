@@ -108,10 +108,11 @@ using MapFigure = double (*)(const Measures& map);
 [[nodiscard]] std::vector<MeanEstimate> paired_gaps(std::span<const CampaignEntry> runs, const CampaignGroup& a,
                                                     const CampaignGroup& b, std::size_t budget);
 
-/// Returns one row per run: its key, stop reason, and run_figures().
-[[nodiscard]] CsvTable runs_csv(std::span<const CampaignEntry> runs, std::size_t budget);
-/// Returns one row per view, and one with number 0 for the initial scan of each run.
-[[nodiscard]] CsvTable views_csv(std::span<const CampaignEntry> runs);
+/// Writes one row per run: its key, stop reason, and run_figures(). Atomic, as CsvTable::write.
+[[nodiscard]] Status write_runs_csv(const std::filesystem::path& path, std::span<const CampaignEntry> runs,
+                                    std::size_t budget);
+/// Writes one row per view, and one with number 0 for the initial scan of each run. Atomic, as CsvTable::write.
+[[nodiscard]] Status write_views_csv(const std::filesystem::path& path, std::span<const CampaignEntry> runs);
 /// Returns one row per group and measure: number of runs (or scenes) with it, mean, low and high end. The scene of a
 /// group over all scenes is empty.
 [[nodiscard]] CsvTable summary_csv(std::span<const CampaignSummary> summaries);

@@ -259,13 +259,16 @@ TEST(Campaign, AFileOfTheFirstVersionIsBroughtUpToDate) {
 TEST(Campaign, TablesAreQuotedAndLeaveOutWhatIsNotThere) {
   CampaignEntry run = run_of(key_of(7), 1);
   run.key.scene = "a \"jug\", large";
-  const std::string text = runs_csv({&run, 1}, 3).text();
+  const TempFolder folder;
+  ASSERT_TRUE(write_runs_csv(folder / "runs.csv", {&run, 1}, 3));
+  ASSERT_TRUE(write_views_csv(folder / "views.csv", {&run, 1}));
+  const std::string text = read_text_file(folder / "runs.csv").value();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
   EXPECT_NE(text.find("\n\"a \"\"jug\"\", large\",00ff00ff00ff00ff,sphere,kinect-v1,7,views_used_up,0.25,0.507,"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find(R"("{""max_views"":3,""voxel_size_m"":0.01}")"), std::string::npos) << text;
-  const std::string views = views_csv({&run, 1}).text();
+  const std::string views = read_text_file(folder / "views.csv").value();
   EXPECT_NE(views.find(",sphere,kinect-v1,7,0,,,,,,,,,,,,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
   EXPECT_NE(
       views.find(
@@ -277,9 +280,29 @@ TEST(Campaign, TablesAreQuotedAndLeaveOutWhatIsNotThere) {
   const std::string summary = summary_csv(summarize({&run, 1}, 3)).text();
   EXPECT_NE(summary.find("\njug,sphere,kinect-v1,coverage,1,0.507,,\n"), std::string::npos) << summary;
   EXPECT_NE(summary.find("\njug,sphere,kinect-v1,views_to_90,0,,,\n"), std::string::npos) << summary;
+}
+
+TEST(Campaign, TablesAreWrittenInParts) {
+  const std::vector<CampaignEntry> many(3000, run_of(key_of(7), 1));
   const TempFolder folder;
-  ASSERT_TRUE(runs_csv({&run, 1}, 3).write(folder / "runs.csv"));
-  EXPECT_EQ(*read_text_file(folder / "runs.csv"), runs_csv({&run, 1}, 3).text());
+  const auto lines = [&](const std::string& name) {
+    const std::string text = read_text_file(folder / name).value();
+    std::vector<std::string> found;
+    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
+      found.push_back(text.substr(at, text.find('\n', at) - at));
+    }
+    return found;
+  };
+  ASSERT_TRUE(write_runs_csv(folder / "runs.csv", many, 3));
+  ASSERT_TRUE(write_views_csv(folder / "views.csv", many));
+  const std::vector<std::string> runs = lines("runs.csv");
+  const std::vector<std::string> views = lines("views.csv");
+  ASSERT_EQ(runs.size(), 1 + many.size());
+  ASSERT_EQ(views.size(), 1 + 2 * many.size());
+  EXPECT_EQ(std::count(runs.begin(), runs.end(), runs[1]), 3000);
+  EXPECT_EQ(std::count(views.begin(), views.end(), views[1]), 3000);
+  EXPECT_EQ(std::count(views.begin(), views.end(), views[2]), 3000);
+  EXPECT_FALSE(write_runs_csv(folder / "missing" / "runs.csv", many, 3));
 }
 
 }  // namespace

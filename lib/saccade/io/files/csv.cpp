@@ -3,18 +3,10 @@
 
 #include <array>
 #include <charconv>
-
-#include "saccade/io/files/file_io.hpp"
+#include <cmath>
 
 namespace saccade {
 namespace {
-
-template <class T>
-void append_shortest(std::string& text, T number) {
-  std::array<char, 32> buffer{};
-  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-  if (code == std::errc{}) text.append(buffer.data(), end);
-}
 
 void append_quoted(std::string& text, std::string_view field) {
   if (field.find_first_of(",\"\r\n") == std::string_view::npos) {
@@ -22,11 +14,11 @@ void append_quoted(std::string& text, std::string_view field) {
     return;
   }
   text += '"';
-  for (const char c : field) {
-    if (c == '"') text += '"';
-    text += c;
+  for (std::size_t quote = field.find('"'); quote != std::string_view::npos; quote = field.find('"')) {
+    text.append(field.substr(0, quote + 1)) += '"';
+    field.remove_prefix(quote + 1);
   }
-  text += '"';
+  text.append(field) += '"';
 }
 
 }  // namespace
@@ -46,24 +38,46 @@ CsvTable& CsvTable::add(std::string_view text) {
   return *this;
 }
 
-CsvTable& CsvTable::add(double number) {
+template <class T>
+CsvTable& CsvTable::add_number(T number) {
   begin_field();
-  append_shortest(text_, number);
+  std::array<char, 32> buffer{};
+  const auto [end, code] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
+  if (code == std::errc{}) text_.append(buffer.data(), end);
   return *this;
 }
 
-CsvTable& CsvTable::add(std::uint64_t number) {
-  begin_field();
-  append_shortest(text_, number);
-  return *this;
+CsvTable& CsvTable::add(double number) {
+  // Integers below this are not shorter with an exponent, and are written much faster as integers.
+  constexpr double kPlain{100'000.0};
+  const bool is_integer = number > 0.0 && number < kPlain && number == std::floor(number);
+  return is_integer ? add_number(static_cast<std::uint64_t>(number)) : add_number(number);
 }
+
+CsvTable& CsvTable::add(std::uint64_t number) { return add_number(number); }
 
 CsvTable& CsvTable::add(const std::optional<double>& number) { return number ? add(*number) : add(std::string_view{}); }
+
+CsvTable& CsvTable::add_fields(std::string_view fields, std::size_t count) {
+  begin_field();
+  fields_ += count - 1;
+  text_ += fields;
+  return *this;
+}
 
 void CsvTable::end_row() {
   SACCADE_EXPECTS(fields_ == columns_);
   fields_ = 0;
   text_ += '\n';
+  row_ = text_.size();
+}
+
+Status CsvTable::move_to(AtomicFile& file) {
+  SACCADE_EXPECTS(fields_ == 0);
+  SACCADE_CHECK(file.write(text_));
+  text_.clear();
+  row_ = 0;
+  return {};
 }
 
 Status CsvTable::write(const std::filesystem::path& path) const { return write_file_atomically(path, text_); }

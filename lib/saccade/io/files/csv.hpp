@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saccade/core/result.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 
@@ -24,18 +25,28 @@ class CsvTable {
   CsvTable& add(double number);
   CsvTable& add(std::uint64_t number);
   CsvTable& add(const std::optional<double>& number);
+  /// Adds fields as fields() has returned them.
+  CsvTable& add_fields(std::string_view fields, std::size_t count);
   /// Ends the row. Expects one field per column.
   void end_row();
 
+  /// Returns the fields of the current row, to be repeated in rows that begin alike.
+  [[nodiscard]] std::string_view fields() const { return std::string_view{text_}.substr(row_); }
   [[nodiscard]] const std::string& text() const { return text_; }
+  /// Writes the finished rows to a file and forgets them, so that a long table is written in parts. Expects no row
+  /// under way. Answers io_failure.
+  [[nodiscard]] Status move_to(AtomicFile& file);
   /// Writes atomically: the old or the complete new file exists. Answers io_failure.
   [[nodiscard]] Status write(const std::filesystem::path& path) const;
 
  private:
   void begin_field();
+  template <class T>
+  CsvTable& add_number(T number);
 
   std::size_t columns_;
   std::size_t fields_{0};  ///< fields of the current row
+  std::size_t row_{0};     ///< where the current row begins
   std::string text_;
 };
 
