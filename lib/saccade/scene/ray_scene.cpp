@@ -71,8 +71,8 @@ Rgb8 RayScene::Impl::color_at(const TriangleHit& hit, const Vector3d& p_world) c
   Vector3d color;
   if (mesh.colors.empty()) {
     const Pose& to_object = T_object_world[hit.object];
-    const Rgb8 plain = paint_at(object, to_object * p_world, to_object.linear() * hit.normal_world).color;
-    color = Vector3d{double(plain[0]), double(plain[1]), double(plain[2])};
+    const Paint paint = paint_at(object, to_object * p_world, to_object.linear() * hit.normal_world);
+    color = Vector3d{double(paint.color[0]), double(paint.color[1]), double(paint.color[2])};
   } else {
     const auto& [a, b, c] = mesh.triangles[hit.triangle];
     for (int k = 0; k < 3; ++k) {
@@ -82,12 +82,11 @@ Rgb8 RayScene::Impl::color_at(const TriangleHit& hit, const Vector3d& p_world) c
     }
   }
   const double lambert = std::max(0.0, hit.normal_world.dot(to_light_world()));
-  Rgb8 shaded{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double value = color[static_cast<Eigen::Index>(k)] * (kAmbient + (1.0 - kAmbient) * lambert);
-    shaded[k] = static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
-  }
-  return shaded;
+  const double light = kAmbient + (1.0 - kAmbient) * lambert;
+  const auto shaded = [&](Eigen::Index k) {
+    return static_cast<std::uint8_t>(std::clamp(color[k] * light + 0.5, 0.0, 255.0));  // rounds to the nearest
+  };
+  return {shaded(0), shaded(1), shaded(2)};
 }
 
 std::optional<TriangleHit> RayScene::Impl::hit_of(unsigned object, unsigned triangle, const Vector3d& origin,

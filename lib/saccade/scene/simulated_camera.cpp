@@ -81,7 +81,7 @@ DepthImage SimulatedCamera::measured(ExactFrame& exact, const Pose& T_world_came
     truth_ = std::move(frame.truth);
     return std::move(frame.depth);
   }
-  return config_.noise ? with_noise(exact.depth, *config_.noise, frames_, &exact.incidence_cosine)
+  return config_.noise ? with_noise(exact.depth, *config_.noise, frames_, &exact.incidence_cosine, executor)
                        : std::move(exact.depth);
 }
 

@@ -52,28 +52,31 @@ Status DepthNoise::validate() const {
 }
 
 DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uint64_t frame,
-                      const Image<float>* incidence_cosine) {
+                      const Image<float>* incidence_cosine, const Executor& executor) {
   SACCADE_EXPECTS(noise.validate().ok());
   SACCADE_EXPECTS(incidence_cosine == nullptr || incidence_cosine->size() == depth.size());
   constexpr std::uint64_t kNumbersPerPixel{16};
   DepthImage noisy = depth;
   const double grazing_cosine = std::cos(noise.grazing_from_rad);
   const std::uint64_t frame_key = mixed(mixed(noise.seed) ^ frame);
-  for (std::size_t i = 0; i < noisy.size(); ++i) {
-    const double z = noisy.data()[i];
-    if (!(z > 0.0)) continue;
-    const std::uint64_t key = frame_key + kNumbersPerPixel * i;
-    double measured = z + noise.sigma_m(z) * normal(key);
-    if (noise.disparity_step_per_m > 0.0) {
-      const double steps = std::nearbyint(noise.disparity_step_per_m / measured);
-      measured = steps > 0.0 ? noise.disparity_step_per_m / steps : 0.0;
+  constexpr std::size_t kPixelsPerTask{8192};
+  executor.parallel_for(noisy.size(), kPixelsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double z = noisy.data()[i];
+      if (!(z > 0.0)) continue;
+      const std::uint64_t key = frame_key + kNumbersPerPixel * i;
+      double measured = z + noise.sigma_m(z) * normal(key);
+      if (noise.disparity_step_per_m > 0.0) {
+        const double steps = std::nearbyint(noise.disparity_step_per_m / measured);
+        measured = steps > 0.0 ? noise.disparity_step_per_m / steps : 0.0;
+      }
+      bool lost = unit(mixed(key + 12)) < noise.dropout || !(measured > 0.0);
+      if (incidence_cosine != nullptr) {
+        lost = lost || unit(mixed(key + 13)) < lost_share(noise, grazing_cosine, incidence_cosine->data()[i]);
+      }
+      noisy.data()[i] = lost ? 0.0F : static_cast<float>(measured);
     }
-    bool lost = unit(mixed(key + 12)) < noise.dropout || !(measured > 0.0);
-    if (incidence_cosine != nullptr) {
-      lost = lost || unit(mixed(key + 13)) < lost_share(noise, grazing_cosine, incidence_cosine->data()[i]);
-    }
-    noisy.data()[i] = lost ? 0.0F : static_cast<float>(measured);
-  }
+  });
   return noisy;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "saccade/core/angle.hpp"
+#include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/image.hpp"
 
@@ -31,10 +32,10 @@ struct DepthNoise {
 };
 
 /// Returns the image with noise; pixels without a return (≤ 0, NaN) are kept. Each pixel's noise depends only on the
-/// seed, the frame number and its index, so the result is equal on every machine and for every order of frames. Expects
-/// valid noise. incidence_cosine: cosine of the angle between each pixel's ray and the surface's normal, an image of
-/// equal size. Without it, no grazing returns are lost. O(pixels).
+/// seed, the frame number and its index, so the result is equal on every machine, for every order of frames, and for
+/// every thread count. Expects valid noise. incidence_cosine: cosine of the angle between each pixel's ray and the
+/// surface's normal, an image of equal size. Without it, no grazing returns are lost. O(pixels).
 [[nodiscard]] DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uint64_t frame = 0,
-                                    const Image<float>* incidence_cosine = nullptr);
+                                    const Image<float>* incidence_cosine = nullptr, const Executor& executor = {});
 
 }  // namespace saccade
