@@ -156,7 +156,8 @@ campaign attention compare --scenes tabletop-1,tabletop-2,tabletop-3,tabletop-4 
 campaign attention_clutter compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle --robot comau --seeds 1 --max-views 5
 
 echo "Published protocols: stand-ins, and the meshes that are there, all strategies; tables go to docs/results/benchmark.md"
-step benchmark env SACCADE_DATA="$data" scripts/evidence_benchmark.py build/release/saccade "$out" docs/results/benchmark.md
+scripts/stanford_meshes.sh "$out/stanford" >/dev/null || echo "  protocols on Stanford models: only with those that are there"
+step benchmark env SACCADE_DATA="$data" STANFORD="$out/stanford" scripts/evidence_benchmark.py build/release/saccade "$out" docs/results/benchmark.md
 
 echo "The planner beside the oracle, baselines and sphere, on Slurm where it answers; figures go to docs/results/planner.md"
 step planner scripts/evidence_planner.py build/release/saccade "$out/planner" docs/results/planner.md

@@ -6,7 +6,8 @@ Runs each protocol of `saccade benchmark` on stand-ins, and on the meshes that a
 FOLDER (evidence_campaign.py: an interrupted one goes on with the same call, and a cluster that answers gets it). With "table",
 nothing runs. DOCUMENT gets the tables that are there, and says which protocols were not run yet.
 Exit status 0: complete, and `surface` reached the published figures; 1: it missed one; 2: a campaign failed; 3: not complete.
-SACCADE_DATA: meshes (../shared/data). SACCADE_BENCHMARK_SEEDS: how many seeds (3)."""
+SACCADE_DATA: meshes (../shared/data). STANFORD: folder of scripts/stanford_meshes.sh (out/stanford).
+SACCADE_BENCHMARK_SEEDS: how many seeds (3)."""
 import csv
 import json
 import math
@@ -19,7 +20,7 @@ import typing
 
 from evidence_campaign import INTERRUPTED, NOT_COMPLETE
 
-DATA = pathlib.Path(os.environ.get("SACCADE_DATA", "../shared/data"))
+FOLDERS = {"$SACCADE_DATA": os.environ.get("SACCADE_DATA", "../shared/data"), "$STANFORD": os.environ.get("STANFORD", "out/stanford")}
 SEEDS = int(os.environ.get("SACCADE_BENCHMARK_SEEDS", "3"))
 OURS = {"surface": "ours", "surface-one-shot": "ours, all views at once"}
 KINDS = {**OURS, "standard": "the thesis", "random": "chance", "random-contours": "chance"}
@@ -28,14 +29,21 @@ FROM = {"published": "the published meshes, checked by their MD5",
         "own": "meshes other than those of the publications, so that figures cannot be compared with theirs"}
 
 
+def filled_in(words):
+    """Words with the folders in place of their names."""
+    for name, folder in FOLDERS.items():
+        words = words.replace(name, folder)
+    return words
+
+
 class Campaign(typing.NamedTuple):
     title: str
-    words: str  # after `saccade benchmark`; DATA/ is the folder of meshes
-    needs: str = ""  # file or folder in DATA; without it nothing runs
+    words: str  # after `saccade benchmark`; with names of FOLDERS
+    needs: str = ""  # file or folder; without it nothing runs
     about: str = ""  # replaces the origin of the objects
 
     def can_run(self):
-        return not self.needs or (DATA / self.needs).exists()
+        return not self.needs or pathlib.Path(filled_in(self.needs)).exists()
 
 
 ABOUT = ("Written by `make evidence` (`scripts/evidence_benchmark.py`) from the tables of the commands below. "
@@ -45,23 +53,21 @@ ABOUT = ("Written by `make evidence` (`scripts/evidence_benchmark.py`) from the 
          "[gains of other authors](../design/baselines.md). Differences are paired by object (`tabletop-arm`: by scene); bold ones have an "
          "interval without 0, each by itself: nothing is corrected for the number of comparisons. Published figures are held to shares of "
          "all, after the published number of views, or after the protocol's where that is less.")
-BUNNY = ("the decimated Stanford Bunny of the npm package `bunny` 1.0.1 (1839 vertices, 3674 triangles, closed), written as OBJ from "
-         "its lists of positions and cells. It is not the checksummed original, `BunnyMesh.ply`, and the Armadillo of the published run "
-         "is not among the objects")
+ARMADILLO = ("the Armadillo of the Stanford 3D Scanning Repository with 26,002 of its 172,974 vertices, as of "
+             "`scripts/stanford_meshes.sh`, checked by its MD5. The published run is of the Armadillo")
+STANFORD = ("the Bunny and the Dragon of the Stanford 3D Scanning Repository, and its Armadillo with 26,002 of 172,974 vertices, as "
+            "`scripts/stanford_meshes.sh` fetches them, checked by their MD5")
 CAMPAIGNS = {
     "benchmark_view-sphere": Campaign("`view-sphere`", "view-sphere"),
     "benchmark_one-shot": Campaign("`one-shot`", "one-shot"),
     "benchmark_tabletop-arm": Campaign("`tabletop-arm`", "tabletop-arm", about="random clutter, eight objects a scene"),
     "benchmark_household": Campaign("`household`", "household"),
-    "benchmark_ycb": Campaign("`household`, YCB objects", "household --objects DATA/meshes_ycb", "meshes_ycb",
+    "benchmark_ycb": Campaign("`household`, YCB objects", "household --objects $SACCADE_DATA/meshes_ycb", "$SACCADE_DATA/meshes_ycb",
                               "scans `google_16k` of the YCB objects, checked by their MD5"),
-    "benchmark_view-sphere_stanford": Campaign("`view-sphere`, Armadillo and Bunny",
-                                               "view-sphere --objects DATA/meshes_stanford", "meshes_stanford"),
-    "benchmark_one-shot_stanford": Campaign("`one-shot`, Armadillo and Bunny", "one-shot --objects DATA/meshes_stanford",
-                                            "meshes_stanford"),
-    "benchmark_bunny": Campaign("A Stanford model, by `view-sphere`",
-                                "view-sphere --meshes DATA/meshes_bunny/bunny.obj --mesh-up y --strategies "
-                                "surface,surface-one-shot,standard,random,surface-edge,projection", "meshes_bunny/bunny.obj", BUNNY),
+    "benchmark_view-sphere_armadillo": Campaign("`view-sphere`, the published object", "view-sphere --objects $STANFORD --only armadillo",
+                                                "$STANFORD/armadillo.off", ARMADILLO),
+    "benchmark_view-sphere_stanford": Campaign("`view-sphere`, Stanford models", "view-sphere --objects $STANFORD", "$STANFORD", STANFORD),
+    "benchmark_one-shot_stanford": Campaign("`one-shot`, Stanford models", "one-shot --objects $STANFORD", "$STANFORD", STANFORD),
 }
 
 
@@ -72,7 +78,7 @@ def seed_text(seeds):
 
 def run(program, name, folder):
     """@return the exit status of evidence_campaign.py."""
-    words = CAMPAIGNS[name].words.replace("DATA/", f"{DATA}/").split()
+    words = filled_in(CAMPAIGNS[name].words).split()
     command = [pathlib.Path(__file__).with_name("evidence_campaign.py"), program, folder / name, "benchmark", *words, "--seeds",
                seed_text(range(1, SEEDS + 1))]
     print("  " + " ".join(map(str, command)), flush=True)
@@ -188,9 +194,9 @@ def differences(results):
 def held_to(results):
     """Lines on what is held to published figures, and how many of them the first strategy missed."""
     lines, missed, so_far = [], 0, "" if results.complete else " so far"
-    other = "" if results.objects_from == "published" else " (other objects)"
     for published in (row for row in results.published if number(row, "views") > 1):  # the first view is given, not chosen
         share = number(published, "published")
+        other = "" if published["same_object"] == "yes" else " (other objects)"
         for strategy in (name for name in results.strategies if name in OURS):
             row = results.row(strategy, results.at(published))
             gap = 100 * (number(row, "of_all") - share)
@@ -207,10 +213,10 @@ def section(name, folder):
     """Lines of a campaign's section, how many published figures its first strategy missed, and whether it is complete."""
     campaign, results = CAMPAIGNS[name], Results(folder / name)
     seeds = seed_text(results.seeds or range(1, SEEDS + 1))
-    command = f"saccade benchmark {campaign.words.replace('DATA/', '$SACCADE_DATA/')} --seeds {seeds} --out DIR"
+    command = f"saccade benchmark {campaign.words} --seeds {seeds} --out DIR"
     lines = [f"## {campaign.title}", "", "```sh", command, "```", ""]
     if not results.ours or (results.ours[0]["complete"] != "yes" and number(results.ours[0], "objects") < 2):
-        missing = "" if campaign.can_run() else f": `$SACCADE_DATA/{campaign.needs}` was not there"
+        missing = "" if campaign.can_run() else f": `{campaign.needs}` was not there"
         why = f"{len(results.runs)} runs so far: too few for figures" if results.runs else f"Not run yet{missing}"
         return [*lines, f"{why}.", ""], 0, not campaign.can_run()
     told, origin = results.told, campaign.about or FROM[results.objects_from]

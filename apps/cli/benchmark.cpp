@@ -156,7 +156,7 @@ nlohmann::json benchmark_list_json() {
   for (const Benchmark& benchmark : benchmarks()) {
     nlohmann::json meshes = nlohmann::json::array();
     for (const BenchmarkMesh& mesh : benchmark.meshes) {
-      meshes.push_back({{"file", mesh.file}, {"md5", mesh.md5}, {"from", mesh.from}});
+      meshes.push_back({{"object", mesh.object}, {"file", mesh.file}, {"md5", mesh.md5}, {"from", mesh.from}});
     }
     all.push_back({{"name", benchmark.name},
                    {"version", benchmark.version},
@@ -268,7 +268,7 @@ class BenchmarkCommand final : public Command {
     for (const NamedPlanner& strategy : compare_.strategies) {
       if (comparison.is_same_for_all_seeds(strategy, noise_key(plan.run))) of_one_seed.insert(strategy.name);
     }
-    const BenchmarkTable table = benchmark_table(benchmark_, measured, compared, of_one_seed, planned);
+    const BenchmarkTable table = benchmark_table(benchmark_, plan, measured, compared, of_one_seed, planned);
     SACCADE_CHECK(write_benchmark(context.out(), benchmark_, plan, table, measured));
     result["benchmark"] = benchmark_json(benchmark_, plan, table);
     return benchmark_text(benchmark_, plan, table);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <sstream>
 
@@ -15,94 +14,6 @@ namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-/// Numbers of views at which our strategies are told: those of published figures, and the protocol's own.
-std::set<std::size_t> told_views(const Benchmark& benchmark) {
-  std::set<std::size_t> views{benchmark.views_in_all};
-  for (const PublishedFigure& figure : benchmark.published) {
-    views.insert(std::min(benchmark.views_in_all, static_cast<std::size_t>(figure.views)));
-  }
-  return views;
-}
-
-std::vector<std::string> strategies_in(const ComparedRuns& compared) {
-  std::vector<std::string> strategies;
-  for (const CampaignSummary& summary : compared.summaries) {
-    const std::string& name = summary.group.strategy;
-    if (std::find(strategies.begin(), strategies.end(), name) == strategies.end()) strategies.push_back(name);
-  }
-  return strategies;
-}
-
-/// Scene and seed, which runs of different strategies have in common.
-using SceneAndSeed = std::pair<std::string, std::uint64_t>;
-
-/// Places of which all strategies have a run, and the runs there.
-class SharedRuns {
- public:
-  /// @param of_one_seed  strategies whose run of a scene stands for every seed
-  SharedRuns(const std::vector<std::string>& strategies, const ComparedRuns& compared,
-             const std::set<std::string>& of_one_seed)
-      : of_one_seed_{of_one_seed} {
-    std::map<SceneAndSeed, std::set<std::string>> run_by;
-    std::map<std::string, std::set<std::string>> any_seed_by;
-    for (const CampaignEntry& run : compared.runs) {
-      run_by[{run.key.scene, run.key.seed}].insert(run.key.strategy);
-      if (stands_for_all_seeds(run.key)) any_seed_by[run.key.scene].insert(run.key.strategy);
-    }
-    for (auto& [place, by] : run_by) {
-      by.insert(any_seed_by[place.first].begin(), any_seed_by[place.first].end());
-      if (by.size() != strategies.size()) continue;
-      places_.insert(place);
-      scenes_.insert(place.first);
-    }
-  }
-
-  [[nodiscard]] std::size_t places() const { return places_.size(); }
-
-  /// Returns those of the runs, measured or of a campaign, that are shared.
-  template <class Run>
-  [[nodiscard]] std::vector<Run> among(const std::vector<Run>& runs) const {
-    std::vector<Run> kept;
-    std::copy_if(runs.begin(), runs.end(), std::back_inserter(kept), [&](const Run& run) {
-      return stands_for_all_seeds(run.key) ? scenes_.count(run.key.scene) > 0
-                                           : places_.count({run.key.scene, run.key.seed}) > 0;
-    });
-    return kept;
-  }
-
- private:
-  [[nodiscard]] bool stands_for_all_seeds(const CampaignKey& run) const { return of_one_seed_.count(run.strategy) > 0; }
-
-  const std::set<std::string>& of_one_seed_;
-  std::set<SceneAndSeed> places_;
-  std::set<std::string> scenes_;
-};
-
-BenchmarkRow row_after(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
-                       const std::string& strategy, std::size_t views) {
-  const auto over = [&](const CurveFigure& figure) {
-    return over_objects(object_figures(benchmark, measured, strategy, figure));
-  };
-  BenchmarkRow row;
-  row.method = strategy;
-  row.views = static_cast<double>(views);
-  row.taken = over([views](const BenchmarkCurve& curve) { return static_cast<double>(std::min(views, curve.taken)); });
-  row.of_visible = over(share_after(views, &CoverageShares::of_visible));
-  row.of_all = over(share_after(views, &CoverageShares::of_all));
-  return row;
-}
-
-BenchmarkRow row_of_own_scenes(const std::vector<CampaignSummary>& summaries, const std::string& strategy) {
-  const auto over = [&](const char* figure) { return over_objects(object_figures(summaries, strategy, figure)); };
-  BenchmarkRow row;
-  row.method = strategy;
-  row.views = over("views").mean;
-  row.of_visible = over("coverage");
-  row.path_m = over("path_m");
-  row.motion_s = over("motion_s");
-  return row;
-}
 
 std::string shown(const std::optional<MeanEstimate>& estimate, double scale, int decimals) {
   if (!estimate || estimate->n == 0) return "-";
@@ -225,6 +136,7 @@ json row_json(const BenchmarkRow& row) {
     value["year"] = row.published->year > 0 ? json(row.published->year) : json(nullptr);
     value["source"] = row.published->source;
     value["object"] = row.published->object;
+    value["same_object"] = row.same_object;
     value["differs"] = row.published->differs;
   }
   return value;
@@ -232,52 +144,14 @@ json row_json(const BenchmarkRow& row) {
 
 }  // namespace
 
-std::vector<std::string> objects_of(const Benchmark& benchmark, const std::vector<Scene>& scenes) {
-  std::vector<std::string> objects;
-  for (const Scene& scene : scenes) {
-    std::string object = object_of(benchmark, scene.name);
-    if (std::find(objects.begin(), objects.end(), object) == objects.end()) objects.push_back(std::move(object));
-  }
-  return objects;
-}
-
-BenchmarkTable benchmark_table(const Benchmark& benchmark, const std::vector<MeasuredRun>& measured,
-                               const ComparedRuns& compared, const std::set<std::string>& of_one_seed,
-                               std::size_t planned) {
-  const std::vector<std::string> strategies = strategies_in(compared);
-  const SharedRuns shared{strategies, compared, of_one_seed};
-  BenchmarkTable table{{}, {}, planned, compared.runs.size(), shared.places()};
-  if (benchmark.rule && shared.places() > 0) {
-    const std::vector<MeasuredRun> runs = shared.among(measured);
-    for (const std::string& strategy : strategies) {
-      for (const std::size_t views : told_views(benchmark)) {
-        table.rows.push_back(row_after(benchmark, runs, strategy, views));
-      }
-    }
-    table.differences = object_differences(benchmark, runs, strategies);
-  } else if (shared.places() > 0) {
-    const std::vector<CampaignSummary> summaries = summarize(shared.among(compared.runs), compared.budget);
-    for (const std::string& strategy : strategies) table.rows.push_back(row_of_own_scenes(summaries, strategy));
-    table.differences = object_differences(benchmark, summaries, strategies);
-  }
-  for (const PublishedFigure& figure : benchmark.published) {
-    BenchmarkRow row;
-    row.method = figure.method;
-    row.views = figure.views;
-    row.published = figure;
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-std::vector<std::string> beside_published(const Benchmark& benchmark, const BenchmarkTable& table,
-                                          ObjectSource objects) {
+std::vector<std::string> beside_published(const Benchmark& benchmark, const BenchmarkTable& table) {
   if (!table.is_complete() || table.rows.empty() || table.rows.front().published) return {};
   const std::string& ours = table.rows.front().method;
   std::vector<std::string> short_of;
   std::vector<std::string> reached;
-  for (const PublishedFigure& figure : benchmark.published) {
-    if (figure.views <= 1.0) continue;  // the first view is given, not chosen
+  for (const BenchmarkRow& told : table.rows) {
+    if (!told.published || told.views <= 1.0) continue;  // the first view is given, not chosen
+    const PublishedFigure& figure = *told.published;
     const auto at = std::min(static_cast<double>(benchmark.views_in_all), std::floor(figure.views));
     const auto row = std::find_if(table.rows.begin(), table.rows.end(), [&](const BenchmarkRow& candidate) {
       return !candidate.published && candidate.method == ours && candidate.views == at;
@@ -290,7 +164,7 @@ std::vector<std::string> beside_published(const Benchmark& benchmark, const Benc
             fixed(100.0 * row->of_all->mean, 1) + " % of all; " + figure.method + " " +
             fixed(100.0 * figure.coverage, 1) + " % after " + views_text(figure.views) + ": ";
     line += gap >= 0.0 ? "not below it" : "short of it by " + fixed(-100.0 * gap, 1) + " points of all";
-    if (objects != ObjectSource::published) line += " (other objects)";
+    if (!told.same_object) line += " (other objects)";
     (gap >= 0.0 ? reached : short_of).push_back(std::move(line));
   }
   short_of.insert(short_of.end(), reached.begin(), reached.end());
@@ -314,7 +188,7 @@ std::string benchmark_text(const Benchmark& benchmark, const BenchmarkPlan& plan
     if (!told.insert(figure.differs).second) continue;
     text << "what differs from [" << source_number(benchmark, figure.source) << "]: " << figure.differs << '\n';
   }
-  for (const std::string& line : beside_published(benchmark, table, plan.objects)) text << line << '\n';
+  for (const std::string& line : beside_published(benchmark, table)) text << line << '\n';
   return text.str();
 }
 
@@ -335,7 +209,7 @@ json benchmark_json(const Benchmark& benchmark, const BenchmarkPlan& plan, const
           {"complete", table.is_complete()},
           {"table", std::move(rows)},
           {"differences", differences_json(table.differences)},
-          {"beside_published", beside_published(benchmark, table, plan.objects)},
+          {"beside_published", beside_published(benchmark, table)},
           {"not_published", benchmark.not_published}};
 }
 
@@ -348,9 +222,9 @@ Status write_benchmark(const std::filesystem::path& folder, const Benchmark& ben
       {"complete", table.is_complete() ? "yes" : "no"}};
   std::vector<std::string_view> columns;
   for (const auto& [column, value] : about) columns.push_back(column);
-  for (const char* column :
-       {"method", "views", "views_taken", "of_visible", "of_visible_low", "of_visible_high", "of_all", "of_all_low",
-        "of_all_high", "objects", "path_m", "motion_s", "published", "year", "source", "object", "differs"}) {
+  for (const char* column : {"method", "views", "views_taken", "of_visible", "of_visible_low", "of_visible_high",
+                             "of_all", "of_all_low", "of_all_high", "objects", "path_m", "motion_s", "published",
+                             "year", "source", "object", "same_object", "differs"}) {
     columns.emplace_back(column);
   }
   CsvTable rows{columns};
@@ -374,7 +248,8 @@ Status write_benchmark(const std::filesystem::path& folder, const Benchmark& ben
     add_mean(row.motion_s);
     rows.add(figure ? std::optional{figure->coverage} : std::nullopt);
     rows.add(figure && figure->year > 0 ? std::to_string(figure->year) : "").add(figure ? figure->source : "");
-    rows.add(figure ? figure->object : "").add(figure ? figure->differs : "");
+    rows.add(figure ? figure->object : "");
+    rows.add(!figure ? "" : row.same_object ? "yes" : "no").add(figure ? figure->differs : "");
     rows.end_row();
   }
   SACCADE_CHECK(rows.write(folder / "table.csv"));

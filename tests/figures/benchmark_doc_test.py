@@ -18,7 +18,7 @@ import evidence_benchmark  # noqa: E402
 
 TABLE = ("benchmark", "version", "objects_from", "complete", "method", "views", "views_taken", "of_visible", "of_visible_low",
          "of_visible_high", "of_all", "of_all_low", "of_all_high", "objects", "path_m", "motion_s", "published", "year", "source", "object",
-         "differs")
+         "same_object", "differs")
 DIFFERENCES = ("method", "beside", "views", "objects", "of_visible", "of_visible_low", "of_visible_high", "of_visible_excludes_0",
                "of_all", "of_all_low", "of_all_high", "of_all_excludes_0")
 CURVES = ("object", "strategy", "seed", "view", "of_visible", "of_all", "views_taken")
@@ -37,7 +37,7 @@ class BenchmarkDocument(unittest.TestCase):
             table.writeheader()
             table.writerows(rows)
 
-    def write_protocol(self, name="benchmark_one-shot", loss=0.0, seeds=3, complete="yes", objects_from="stand-ins", objects=2):
+    def write_protocol(self, name="benchmark_one-shot", loss=0.0, seeds=3, complete="yes", objects_from="stand-ins", same_object="no", objects=2):
         """A campaign of one object from two first views; its table says that there are more.
 
         @param loss  how much each strategy of ours has less"""
@@ -52,7 +52,7 @@ class BenchmarkDocument(unittest.TestCase):
                     runs.append({"scene": scene, "strategy": strategy, "seed": seed, "views": 0 if strategy == "projection" else 11})
                     curves += [{"object": scene, "strategy": strategy, "seed": seed, "view": view,
                                 "of_all": min(share, 0.1 * view) - loss} for view in range(1, 13)]
-        rows += [{**about, "method": method, "views": views, "published": share, "source": source, "object": "a hand",
+        rows += [{**about, "method": method, "views": views, "published": share, "source": source, "object": "a hand", "same_object": same_object,
                   "differs": f"all of the {source}"} for method, views, share, source in PUBLISHED]
         gaps = [{"method": "surface", "beside": other, "views": 12, "of_visible": 0.05, "of_visible_low": 0.04,
                  "of_visible_excludes_0": "yes", "of_all": -0.0001, "of_all_low": -0.02, "of_all_excludes_0": "no"}
@@ -66,7 +66,7 @@ class BenchmarkDocument(unittest.TestCase):
         document = self.folder / "document.md"
         data = self.folder / "data"
         command = [SCRIPTS / "evidence_benchmark.py", program or "no-program", self.folder, document, *([] if program else ["table"])]
-        environment = {**os.environ, "SACCADE_DATA": str(data), "SACCADE_BENCHMARK_SEEDS": "3", "SACCADE_SLURM": "off"}
+        environment = {**os.environ, "SACCADE_DATA": str(data), "STANFORD": str(self.folder / "stanford"), "SACCADE_BENCHMARK_SEEDS": "3", "SACCADE_SLURM": "off"}
         done = subprocess.run(command, check=False, env=environment, stdout=subprocess.DEVNULL)
         text = document.read_text()
         self.assertNotIn(str(self.folder), text)
@@ -100,7 +100,7 @@ class BenchmarkDocument(unittest.TestCase):
         self.assertNotIn("`projection` after", text)
 
     def test_a_miss_of_the_first_strategy_fails(self):
-        self.write_protocol(loss=0.025, objects_from="published")
+        self.write_protocol(loss=0.025, objects_from="published", same_object="yes")
         status, text = self.document()
         self.assertEqual(status, 1, text)
         self.assertIn("- **missed**: `surface` after 12 views: 92.5 ± 0.5 % of all; Network: 93.0 % after 12.2 views; short by 0.5 points",
@@ -128,18 +128,23 @@ class BenchmarkDocument(unittest.TestCase):
         self.assertEqual(text.count(" was not there."), len(evidence_benchmark.CAMPAIGNS) - 4)
         self.assertIn("## `one-shot`\n\n```sh\nsaccade benchmark one-shot --seeds 1-3 --out DIR\n```\n\nNot run yet.", text)
         self.assertIn("Not run yet: `$SACCADE_DATA/meshes_ycb` was not there.", text)
+        self.assertIn("Not run yet: `$STANFORD/armadillo.off` was not there.", text)
 
     def test_every_protocol_that_can_run_is_run(self):
         for ending, expected in (("exit 0", 3), ("exit 1", 2)):
             program = self.folder / "saccade"
             program.write_text(f'#!/bin/sh\necho "$*" >>"{self.folder}/calls"\n{ending}\n')
             program.chmod(0o755)
-            (self.folder / "data/meshes_ycb").mkdir(parents=True, exist_ok=True)
+            for folder in ("data/meshes_ycb", "stanford"):
+                (self.folder / folder).mkdir(parents=True, exist_ok=True)
+            (self.folder / "stanford/armadillo.off").touch()
             (self.folder / "calls").unlink(missing_ok=True)
             self.assertEqual(self.document(program)[0], expected)
             calls = (self.folder / "calls").read_text().splitlines()
-            self.assertEqual([call.split()[2] for call in calls], ["view-sphere", "one-shot", "tabletop-arm", "household", "household"])
-            self.assertIn(f"--objects {self.folder}/data/meshes_ycb --seeds 1-3 --out {self.folder}/benchmark_ycb", calls[-1])
+            self.assertEqual([call.split()[2] for call in calls], ["view-sphere", "one-shot", "tabletop-arm", "household", "household",
+                                                                  "view-sphere", "view-sphere", "one-shot"])
+            self.assertIn(f"--objects {self.folder}/data/meshes_ycb --seeds 1-3 --out {self.folder}/benchmark_ycb", calls[4])
+            self.assertIn(f"--objects {self.folder}/stanford --only armadillo --seeds 1-3", calls[5])
 
 
 if __name__ == "__main__":

@@ -185,6 +185,16 @@ Result<Benchmark> find_benchmark(std::string_view name) {
                ""};
 }
 
+bool has_same_object(const Benchmark& benchmark, const BenchmarkPlan& plan, const PublishedFigure& figure) {
+  if (plan.objects != ObjectSource::published || !figure.measured) return false;
+  return std::all_of(plan.scenes.begin(), plan.scenes.end(), [&](const Scene& scene) {
+    const std::string name = scene.name.substr(0, benchmark.starts > 1 ? scene.name.rfind('@') : std::string::npos);
+    return std::any_of(benchmark.meshes.begin(), benchmark.meshes.end(), [&](const BenchmarkMesh& mesh) {
+      return mesh.object == *figure.measured && std::filesystem::path{mesh.file}.stem() == name;
+    });
+  });
+}
+
 Result<BenchmarkPlan> plan_benchmark(const Benchmark& benchmark, const std::optional<std::filesystem::path>& objects) {
   if (benchmark.has_own_scenes()) {
     BenchmarkPlan plan;

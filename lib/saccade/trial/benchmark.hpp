@@ -20,9 +20,10 @@ namespace saccade {
 
 /// Mesh that a protocol names, and that the user has to bring.
 struct BenchmarkMesh {
-  std::string file;  ///< name in the folder
-  std::string md5;   ///< checksum, 32 hexadecimal digits
-  std::string from;  ///< where the right file is to be had
+  std::string object;  ///< what it shows: of several files that show one object, the first that is there is used
+  std::string file;    ///< name in the folder
+  std::string md5;     ///< checksum, 32 hexadecimal digits
+  std::string from;    ///< where the right file is to be had
   UpAxis up{UpAxis::z};
 };
 
@@ -35,6 +36,8 @@ struct PublishedFigure {
   std::string source;
   std::string object;   ///< what was measured
   std::string differs;  ///< between that protocol and this run
+  /// BenchmarkMesh::object, where one of the protocol's objects was measured, and no other.
+  std::optional<std::string> measured{};
 };
 
 /// Where the views of a protocol come from.
@@ -88,6 +91,10 @@ struct BenchmarkPlan {
   ObjectSource objects{ObjectSource::published};
   SimulatedRunConfig run;  ///< all but strategy, seed and arm
 };
+
+/// Says whether a plan of a protocol is about the very object that a published figure is of, and about no other.
+[[nodiscard]] bool has_same_object(const Benchmark& benchmark, const BenchmarkPlan& plan,
+                                   const PublishedFigure& figure);
 
 /// Expands a protocol. Objects are scaled and put where it says.
 /// @param objects  folder with the protocol's meshes; those that are there are used. nullopt: stand-ins.

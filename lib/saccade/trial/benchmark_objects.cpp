@@ -97,12 +97,14 @@ Result<std::vector<BenchmarkObject>> stand_ins_of(const Benchmark& benchmark) {
 
 Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, const fs::path& folder) {
   std::vector<BenchmarkObject> objects;
+  std::set<std::string> found;
   SACCADE_TRY(const fs::file_status status, status_of(folder));
   if (!fs::exists(status)) return Error{Errc::not_found, "there is no such folder of meshes", folder.string()};
   if (!fs::is_directory(status)) {
     return Error{Errc::invalid_argument, "is a file; the meshes are read from a folder", folder.string()};
   }
   for (const BenchmarkMesh& named : benchmark.meshes) {
+    if (found.count(named.object) > 0) continue;
     const fs::path path = folder / named.file;
     SACCADE_TRY(const fs::file_status mesh_status, status_of(path));
     if (!fs::exists(mesh_status)) continue;
@@ -116,6 +118,7 @@ Result<std::vector<BenchmarkObject>> read_objects(const Benchmark& benchmark, co
       for (Eigen::Vector3f& p : mesh.vertices) p = {p.x(), -p.z(), p.y()};
     }
     mesh.normals.clear();
+    found.insert(named.object);
     objects.push_back({path.stem().string(), {std::move(mesh)}});
   }
   if (!objects.empty()) return objects;

@@ -162,7 +162,8 @@ TEST(Benchmark, TakesOnlyTheRightMeshes) {
   // A protocol of one's own file: it is read, turned upright and scaled.
   Benchmark own = benchmark;
   const std::string off{"OFF\n4 4 0\n0 0 0\n1 0 0\n0 2 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"};
-  own.meshes = {{"tip.off", md5_of_text(off), "this test", UpAxis::y}};
+  own.meshes = {{"Tip", "tip.ply", std::string(32, '0'), "nowhere", UpAxis::y},
+                {"Tip", "tip.off", md5_of_text(off), "this test", UpAxis::y}};
   std::ofstream{folder / "tip.off"} << off;
   const auto read = plan_benchmark(own, folder.path());
   ASSERT_TRUE(read) << read.error().message;
@@ -172,6 +173,39 @@ TEST(Benchmark, TakesOnlyTheRightMeshes) {
   const auto meshes = true_meshes(read->scenes.front());
   const Box bounds = bounds_of(meshes->back().mesh);
   EXPECT_NEAR(bounds.max.z() - bounds.min.z(), 2.0 * (bounds.max.x() - bounds.min.x()), 1e-6);
+}
+
+TEST(Benchmark, TakesOneFileOfEachObjectAndSaysWhichPublishedFiguresAreOfIt) {
+  const test::TempFolder folder;
+  const std::string off{"OFF\n4 4 0\n0 0 0\n1 0 0\n0 2 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"};
+  const std::string md5 = md5_of_text(off);
+  const auto published = [](std::optional<std::string> object) {
+    return PublishedFigure{"theirs", 4.0, 0.9, 2022, "a paper", "one object", "much", std::move(object)};
+  };
+  for (const char* protocol : {"view-sphere", "one-shot"}) {  // one scene for each object, and four
+    Benchmark benchmark = named_protocol(protocol);
+    benchmark.meshes = {{"Tip", "fine.off", md5, "this test"}, {"Tip", "coarse.off", md5, "this test"}};
+    std::ofstream{folder / "coarse.off"} << off;
+    const auto coarse = plan_benchmark(benchmark, folder.path());
+    ASSERT_TRUE(coarse) << coarse.error().message;
+    EXPECT_EQ(coarse->scenes.front().name, protocol == std::string{"one-shot"} ? "coarse@4" : "coarse");
+    EXPECT_TRUE(has_same_object(benchmark, *coarse, published("Tip")));
+    EXPECT_FALSE(has_same_object(benchmark, *coarse, published("Top")));
+    EXPECT_FALSE(has_same_object(benchmark, *coarse, published(std::nullopt)));
+    EXPECT_FALSE(has_same_object(benchmark, *plan_benchmark(benchmark, std::nullopt), published("Tip")));
+
+    std::ofstream{folder / "fine.off"} << off;
+    std::ofstream{folder / "top.off"} << off;
+    const auto both = plan_benchmark(benchmark, folder.path());
+    ASSERT_TRUE(both) << both.error().message;
+    EXPECT_EQ(both->scenes.size(), coarse->scenes.size());
+    EXPECT_TRUE(both->scenes.front().name.starts_with("fine"));
+    benchmark.meshes.push_back({"Top", "top.off", md5, "this test"});
+    const auto two = plan_benchmark(benchmark, folder.path());
+    ASSERT_TRUE(two) << two.error().message;
+    EXPECT_FALSE(has_same_object(benchmark, *two, published("Tip")));
+    std::filesystem::remove(folder / "fine.off");
+  }
 }
 
 TEST(Benchmark, TakesAnyMeshes) {

