@@ -24,7 +24,7 @@ struct BenchmarkRow {
   std::optional<MeanEstimate> path_m;    ///< for protocols with scenes of their own
   std::optional<MeanEstimate> motion_s;  ///< as path_m
   std::optional<PublishedFigure> published;
-  bool same_object{false};  ///< of a published figure: has_same_object()
+  bool same_object{false};  ///< says has_same_object() of a published figure
 };
 
 struct BenchmarkTable {
