@@ -52,7 +52,8 @@ ABOUT = ("Written by `make evidence` (`scripts/evidence_benchmark.py`) from the 
          "before its last view where no view gains anything: \"taken\" is the mean. Baselines are "
          "[gains of other authors](../design/baselines.md). Differences are paired by object (`tabletop-arm`: by scene); bold ones have an "
          "interval without 0, each by itself: nothing is corrected for the number of comparisons. Published figures are held to shares of "
-         "all, after the published number of views, or after the protocol's where that is less.")
+         "all, after the published number of views, or after the protocol's where that is less. `$STANFORD` is a folder that "
+         "`scripts/stanford_meshes.sh` has filled, `$SACCADE_DATA` one with the YCB meshes.")
 ARMADILLO = ("the Armadillo of the Stanford 3D Scanning Repository with 26,002 of its 172,974 vertices, as of "
              "`scripts/stanford_meshes.sh`, checked by its MD5. The published run is of the Armadillo")
 STANFORD = ("the Bunny and the Dragon of the Stanford 3D Scanning Repository, and its Armadillo with 26,002 of 172,974 vertices, as "
